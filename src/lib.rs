@@ -1,0 +1,8 @@
+//! Upthrust grows a world from its plates.
+
+#![warn(missing_docs)]
+
+pub mod grid;
+pub mod noise;
+pub mod process;
+pub mod world;

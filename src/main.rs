@@ -1,0 +1,3 @@
+//! The `upthrust` command.
+
+fn main() {}

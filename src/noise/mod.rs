@@ -1,0 +1,6 @@
+//! Randomness without state: a hash of integer coordinates, streams keyed by what they are for, and the noises built on
+//! them. All coordinates in metres or in units of the caller's wavelength; nothing here knows a map.
+
+mod hash;
+
+pub use hash::{Key, Stream};

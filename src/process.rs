@@ -1,0 +1,175 @@
+//! What every solver looks like from outside: it steps a world, says how far it is, and can be stopped and continued
+//! between any two steps.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    grid::{Field, sum_f64},
+    noise::Key,
+    world::{Layer, Mask, MaskError, Matter, World},
+};
+
+/// One solver bound to its parameters.
+///
+/// A process keeps to the layers it declares. It must give the same bits for any number of threads, and after
+/// `save` and `restore`.
+pub trait Process: Send {
+    /// Layers it needs to find.
+    fn reads(&self) -> &'static [Layer] {
+        &[]
+    }
+
+    /// Layers it may change or make.
+    fn writes(&self) -> &'static [Layer];
+
+    /// Runs one step.
+    fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError>;
+
+    /// Brings the world's layers up to date with the process. The timeline calls it before a frame is taken and when
+    /// the process has finished, so that a step need not write what nobody looks at.
+    fn publish(&mut self, _world: &mut World, _context: &Context) -> Result<(), ProcessError> {
+        Ok(())
+    }
+
+    /// What it needs to go on later, besides its parameters and the world.
+    fn save(&self) -> State;
+
+    /// Puts a saved state back. Called on a fresh process, before its first step.
+    fn restore(&mut self, state: State, context: &Context) -> Result<(), ProcessError>;
+}
+
+/// What a step says of itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Share of the stage that is done, 0 to 1; 1 ends the stage.
+    pub done: f64,
+    /// Years that passed in the world.
+    pub elapsed_yr: f64,
+}
+
+impl Step {
+    /// The only step of a stage that takes no time.
+    pub const WHOLE: Step = Step { done: 1.0, elapsed_yr: 0.0 };
+
+    /// Whether the stage is over.
+    pub fn finished(&self) -> bool {
+        self.done >= 1.0
+    }
+}
+
+/// The saved state of a process.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// Named fields.
+    pub fields: Vec<(String, Field<f32>)>,
+    /// Everything else, in the process's own form.
+    pub blob: Vec<u8>,
+}
+
+/// What a process is given from outside.
+pub struct Context<'a> {
+    /// Root of all its random numbers: the seed and the stage's name.
+    pub key: Key,
+    /// The stage's name in the ledger.
+    pub stage: &'a str,
+    cancel: &'a AtomicBool,
+}
+
+impl<'a> Context<'a> {
+    /// A context for the stage called `stage` of a recipe with this seed.
+    pub fn new(seed: u64, stage: &'a str, cancel: &'a AtomicBool) -> Self {
+        Self { key: Key::new(seed).named(stage), stage, cancel }
+    }
+
+    /// An error if the user asked to stop; long steps ask between their passes.
+    pub fn check(&self) -> Result<(), ProcessError> {
+        if self.cancel.load(Ordering::Relaxed) { Err(ProcessError::Cancelled) } else { Ok(()) }
+    }
+}
+
+/// Why a process stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum ProcessError {
+    /// The user asked for it.
+    #[error("stopped on request")]
+    Cancelled,
+    /// The mask cannot be used.
+    #[error(transparent)]
+    Mask(#[from] MaskError),
+    /// The parameters and this world do not go together, or a file cannot be used.
+    #[error("{0}")]
+    Unfit(String),
+    /// The solver found itself in a state it cannot leave; says where and what helps.
+    #[error("{0}")]
+    Failed(String),
+}
+
+/// How a stage's heights join what is there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Blend {
+    /// The sum of both.
+    Add,
+    /// The new heights alone.
+    #[default]
+    Replace,
+    /// The higher of both.
+    Max,
+    /// The lower of both.
+    Min,
+}
+
+impl Blend {
+    /// The blended height.
+    pub fn of(self, old: f32, new: f32) -> f32 {
+        match self {
+            Blend::Add => old + new,
+            Blend::Replace => new,
+            Blend::Max => old.max(new),
+            Blend::Min => old.min(new),
+        }
+    }
+}
+
+/// Where and how a stage's heights are put: its `blend` and `mask` in the recipe.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// How heights join.
+    pub blend: Blend,
+    /// Where, and how strongly.
+    pub mask: Option<Mask>,
+}
+
+impl Placement {
+    /// Blends `heights` into the bedrock over `base` (the bedrock before the stage) and books the change.
+    pub fn put(
+        &self,
+        base: &Field<f32>,
+        heights: &Field<f32>,
+        world: &mut World,
+        context: &Context,
+    ) -> Result<(), ProcessError> {
+        let mask = self.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
+        let width = world.grid.width;
+        let bedrock = world.layer_mut(Layer::Bedrock);
+        let before = sum_f64(&bedrock.data);
+        let blend = self.blend;
+        crate::grid::map_cells(&mut bedrock.data, width, |x, y| {
+            let old = base.at(x, y);
+            let new = blend.of(old, heights.at(x, y));
+            match &mask {
+                Some(mask) => old + (new - old) * mask.at(x, y),
+                None => new,
+            }
+        });
+        let gained = (sum_f64(&bedrock.data) - before) * world.grid.cell_area_m2();
+        if gained >= 0.0 {
+            world.ledger.book_in(context.stage, Matter::Rock, gained);
+        } else {
+            world.ledger.book_out(context.stage, Matter::Rock, -gained);
+        }
+        Ok(())
+    }
+}
