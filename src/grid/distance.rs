@@ -23,11 +23,11 @@ pub fn nearest_feature(grid: Grid, marked: impl Fn(usize) -> bool + Sync) -> Nea
     let mut rows = vec![NONE; w * h];
     for_each_row(&mut rows, h, |x, column| {
         let mut last: Option<usize> = None;
-        for y in 0..h {
+        for (y, row) in column.iter_mut().enumerate() {
             if marked(y * w + x) {
                 last = Some(y);
             }
-            column[y] = last.map_or(NONE, |r| r as u32);
+            *row = last.map_or(NONE, |r| r as u32);
         }
         last = None;
         for y in (0..h).rev() {
