@@ -5,4 +5,5 @@
 pub mod grid;
 pub mod noise;
 pub mod process;
+pub mod rmp;
 pub mod world;
