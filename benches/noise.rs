@@ -2,12 +2,34 @@
 
 use std::hint::black_box;
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use upthrust::{
     grid::{Edges, Field, Grid},
-    noise::Key,
+    noise::{Basis, Fbm, Key},
     rmp::{self, Arrangement, Raised},
 };
+
+/// Ten octaves over 256² cells.
+fn octaves(c: &mut Criterion) {
+    let mut group = c.benchmark_group("noise");
+    let grid = Grid::new(256, 256, 256e3, Edges::Open);
+    group.throughput(Throughput::Elements(10 * grid.cells() as u64));
+    for basis in [Basis::Value, Basis::Gradient, Basis::Simplex] {
+        let sum = Fbm { octaves: Some(10.0), basis, ..Fbm::new(100e3, 0.8) }.octaves(Key::new(1), 0.0);
+        group.bench_function(format!("{basis:?} octaves"), |b| b.iter(|| over(grid, |at| sum.value(at))));
+        group.bench_function(format!("{basis:?} octaves with slope"), |b| {
+            b.iter(|| over(grid, |at| sum.gradient(at).1[0]))
+        });
+    }
+    let sum = Fbm { octaves: Some(10.0), ..Fbm::new(100e3, 0.8) }.octaves(Key::new(1), 0.0);
+    group.bench_function("hybrid multifractal octaves", |b| b.iter(|| over(grid, |at| sum.hybrid(at, 0.7))));
+    group.finish();
+}
+
+/// One thread, so that the figure is one core's.
+fn over(grid: Grid, f: impl Fn([f64; 2]) -> f64) -> f64 {
+    (0..grid.cells()).map(|i| f(grid.center_m(i % grid.width, i / grid.width))).sum()
+}
 
 /// Draws of the Voronoi form, by the length of the path in site spacings (sites grow with it), and of the line form.
 fn draws(c: &mut Criterion) {
@@ -42,5 +64,5 @@ fn draws(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, draws);
+criterion_group!(benches, octaves, draws);
 criterion_main!(benches);

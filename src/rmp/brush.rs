@@ -12,7 +12,7 @@ use crate::grid::Field;
 const TILE: usize = 1024;
 
 /// Rows that one task of [`raise`] fills. Fixed, so that the result does not depend on the number of threads.
-const BAND: usize = 32;
+const BAND: usize = 128;
 
 /// Scan-converts convex outlines; keeps its mask between calls and touches only the outline's bounding box.
 #[derive(Debug, Default)]
