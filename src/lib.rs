@@ -6,4 +6,5 @@ pub mod grid;
 pub mod noise;
 pub mod process;
 pub mod rmp;
+pub mod terrain;
 pub mod world;

@@ -4,6 +4,9 @@
 //! followed by the next one clockwise around its end. O(c²·log c) for `c` lines. With `X` crossings inside there are
 //! `1 + c + X` faces (Euler).
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use crate::noise::Key;
 
 /// Share of the rectangle's longer side within which two crossings count as one.
@@ -19,7 +22,8 @@ pub struct Face {
 }
 
 /// How faces are taken, one after the other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum Order {
     /// Breadth first: a compact massif.
     #[default]
