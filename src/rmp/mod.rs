@@ -1,5 +1,5 @@
 //! Numerics of "repeated magnification and probing" (Kamal and Uddin 2007): draw a new random partition of the plane,
-//! raise the cells that a peak or a ridge line visits, repeat. Two partitions: a Poisson-Voronoi mosaic ([`cells_along`])
+//! raise the cells that a peak or a ridge line visits, repeat. Two partitions: a Poisson-Voronoi mosaic ([`cells_along`], [`Probe`])
 //! and an arrangement of random lines ([`Arrangement`]). [`Brush`] and [`raise`] turn cells into raster values.
 //!
 //! This room draws partitions and covers raster cells. How high, how often and why is the caller's.
@@ -15,7 +15,7 @@ mod voronoi;
 
 pub use arrangement::{Arrangement, Face, Order};
 pub use brush::{Brush, Raised, raise};
-pub use voronoi::cells_along;
+pub use voronoi::{Probe, cells_along};
 
 /// One cell of a random partition that is to be raised.
 #[derive(Clone, Debug, PartialEq)]

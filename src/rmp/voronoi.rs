@@ -33,41 +33,64 @@ impl HasPosition for Site {
 /// in metres, or a single point for a peak. Outlines are whole cells, also where they leave the map.
 ///
 /// Two paths under one key see the same partition. Cells come in the order of the walk, each once. A path that is empty
-/// or not finite, or a density that is not positive, visits nothing.
+/// or not finite, or a density that is not positive, visits nothing. Many draws along one path share a [`Probe`].
 pub fn cells_along(path: &[[f64; 2]], sites_per_m2: f64, key: Key) -> Vec<Cell> {
-    let scale = sites_per_m2.sqrt();
-    let path: Vec<[f64; 2]> = path.iter().map(|p| [p[0] * scale, p[1] * scale]).collect();
-    let sound = |v: f64| v.is_finite() && v.abs() < LONGEST;
-    if path.is_empty() || scale <= 0.0 || !path.iter().all(|p| sound(p[0]) && sound(p[1])) {
-        return Vec::new();
-    }
-    let Ok(mosaic) = DelaunayTriangulation::<Site>::bulk_load(sites_near(&path, key)) else {
-        return Vec::new();
-    };
-    walk(&mosaic, &path).into_iter().filter_map(|vertex| cell(&mosaic, vertex, scale)).collect()
+    Probe::new(path, sites_per_m2).cells(key)
 }
 
-/// The sites within reach of the path, and four far guards that close every cell that could be visited.
-fn sites_near(path: &[[f64; 2]], key: Key) -> Vec<Site> {
-    let squares = squares_near(path);
-    let mut sites = Vec::with_capacity(squares.len() + 4);
-    for &(iy, ix) in &squares {
-        let mut stream = key.with(key.lattice(ix, iy)).stream();
-        for _ in 0..poisson_one(stream.unit()) {
-            let at = [ix as f64 + stream.unit(), iy as f64 + stream.unit()];
-            let colour = [1.0 - stream.unit(), 1.0 - stream.unit(), 1.0 - stream.unit()];
-            let weight = (colour.iter().map(|c| c * c).sum::<f64>() / 3.0).sqrt();
-            sites.push(Site { at, weight });
+/// A path made ready for many draws.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    /// In units of `1/√λ`, like everything in here; empty if there is nothing to visit.
+    path: Vec<[f64; 2]>,
+    /// Units a metre, `√λ`.
+    scale: f64,
+    /// The squares `(row, column)` whose sites matter.
+    squares: Vec<(i32, i32)>,
+    /// Four places so far out that they close every cell that could be visited.
+    guards: [[f64; 2]; 4],
+}
+
+impl Probe {
+    /// A polyline in metres (or a point), and the density of the sites to draw.
+    pub fn new(path_m: &[[f64; 2]], sites_per_m2: f64) -> Self {
+        let scale = sites_per_m2.sqrt();
+        let mut path: Vec<[f64; 2]> = path_m.iter().map(|p| [p[0] * scale, p[1] * scale]).collect();
+        let sound = |v: &f64| v.is_finite() && v.abs() < LONGEST;
+        if sites_per_m2.is_nan() || sites_per_m2 <= 0.0 || !path.iter().flatten().all(sound) {
+            path.clear();
         }
+        let bound = |axis: usize, pick: fn(f64, f64) -> f64| path.iter().map(|p| p[axis]).reduce(pick).unwrap_or(0.0);
+        let (low, high) = ([bound(0, f64::min), bound(1, f64::min)], [bound(0, f64::max), bound(1, f64::max)]);
+        let far = 4.0 * (high[0] - low[0] + high[1] - low[1]) + 8.0 * REACH;
+        let ([left, top], [right, bottom]) = ([low[0] - far, low[1] - far], [high[0] + far, high[1] + far]);
+        let guards = [[left, top], [right, top], [right, bottom], [left, bottom]];
+        Self { squares: squares_near(&path), path, scale, guards }
     }
-    let bound = |axis: usize, pick: fn(f64, f64) -> f64| path.iter().map(|p| p[axis]).reduce(pick).unwrap_or(0.0);
-    let (low, high) = ([bound(0, f64::min), bound(1, f64::min)], [bound(0, f64::max), bound(1, f64::max)]);
-    let far = 4.0 * (high[0] - low[0] + high[1] - low[1]) + 8.0 * REACH;
-    for [x, y] in [[low[0] - far, low[1] - far], [high[0] + far, low[1] - far]] {
-        sites.push(Site { at: [x, y], weight: 1.0 });
-        sites.push(Site { at: [x, high[1] + far], weight: 1.0 });
+
+    /// The cells visited in the draw of this key.
+    pub fn cells(&self, key: Key) -> Vec<Cell> {
+        if self.path.is_empty() {
+            return Vec::new();
+        }
+        let Ok(mosaic) = DelaunayTriangulation::<Site>::bulk_load(self.sites(key)) else { return Vec::new() };
+        walk(&mosaic, &self.path).into_iter().filter_map(|vertex| cell(&mosaic, vertex, self.scale)).collect()
     }
-    sites
+
+    fn sites(&self, key: Key) -> Vec<Site> {
+        let mut sites = Vec::with_capacity(self.squares.len() + self.squares.len() / 4 + 8);
+        for &(iy, ix) in &self.squares {
+            let mut stream = key.with(key.lattice(ix, iy)).stream();
+            for _ in 0..poisson_one(stream.unit()) {
+                let at = [ix as f64 + stream.unit(), iy as f64 + stream.unit()];
+                let colour = [1.0 - stream.unit(), 1.0 - stream.unit(), 1.0 - stream.unit()];
+                let weight = (colour.iter().map(|c| c * c).sum::<f64>() / 3.0).sqrt();
+                sites.push(Site { at, weight });
+            }
+        }
+        sites.extend(self.guards.map(|at| Site { at, weight: 1.0 }));
+        sites
+    }
 }
 
 /// The unit squares `(row, column)` whose centre lies within reach of the path, sorted, each once.
@@ -75,7 +98,7 @@ fn squares_near(path: &[[f64; 2]]) -> Vec<(i32, i32)> {
     // Half a diagonal, so that every point within reach lies in a chosen square.
     let reach = REACH + 0.5 * std::f64::consts::SQRT_2;
     let mut squares = Vec::new();
-    for i in 0..path.len().saturating_sub(1).max(1) {
+    for i in 0..path.len().saturating_sub(1).max(path.len().min(1)) {
         let (a, b) = (path[i], path[(i + 1).min(path.len() - 1)]);
         let (top, bottom) = (a[1].min(b[1]) - reach, a[1].max(b[1]) + reach);
         for iy in (top - 0.5).ceil() as i32..=(bottom - 0.5).floor() as i32 {

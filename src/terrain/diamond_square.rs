@@ -1,6 +1,7 @@
 //! Midpoint displacement on a square that covers the map.
 //!
-//! The square's side is the map's longer side `S`. Level `j` halves the spacing: first **all** diamond centres (mean of four
+//! The square's side is the map's longer side. It begins with random heights at `blocks + 1` points a side; level `j`
+//! halves the spacing: first **all** diamond centres (mean of four
 //! corners and a displacement), then **all** square points (mean of their three or four neighbours and a displacement),
 //! displacements uniform within `±r₀·2^(−jH)`. Levels follow until the spacing is at most a cell; cell centres read the
 //! lattice bilinearly. A displacement's key is the point's level and place in it: a finer grid adds levels and leaves the
@@ -20,7 +21,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct DiamondSquareParams {
-    /// Largest displacement of the map's corners and of the first midpoints.
+    /// Largest height of the first points above or below the mean, and of the first displacements.
     #[schemars(range(min = 0.0, max = 20000.0), extend("x-unit" = "m", "x-effect" = "higher summits and deeper basins"))]
     pub height_m: f64,
     /// Mean height of the land.
@@ -29,11 +30,14 @@ pub struct DiamondSquareParams {
     /// Hurst exponent: displacements shrink by 2^(−H) with every halving.
     #[schemars(range(min = 0.05, max = 1.2), extend("x-unit" = "1", "x-effect" = "smoother land"))]
     pub hurst: f64,
+    /// Squares along the map's longer side before halving begins.
+    #[schemars(range(min = 1, max = 64), extend("x-unit" = "1", "x-effect" = "more and smaller landmasses"))]
+    pub blocks: u32,
 }
 
 impl Default for DiamondSquareParams {
     fn default() -> Self {
-        Self { height_m: 2500.0, base_m: 0.0, hurst: 0.85 }
+        Self { height_m: 2500.0, base_m: 0.0, hurst: 0.85, blocks: 3 }
     }
 }
 
@@ -42,7 +46,7 @@ impl Shape for DiamondSquareParams {
         let grid = ground.grid;
         let key = context.key.named("diamond-square");
         let cells = grid.width.max(grid.height);
-        let mut lattice = Lattice::corners(key, self.height_m);
+        let mut lattice = Lattice::first(key, self.height_m, self.blocks.max(1) as usize);
         while lattice.side - 1 < cells {
             context.check()?;
             lattice = lattice.halved(key, self.height_m, self.hurst);
@@ -55,7 +59,7 @@ impl Shape for DiamondSquareParams {
     }
 }
 
-/// Heights at `side` x `side` points, `2^level + 1` a side.
+/// Heights at `side` x `side` points, `blocks·2^level + 1` a side.
 struct Lattice {
     level: u32,
     side: usize,
@@ -68,10 +72,10 @@ fn displacement(key: Key, x: usize, y: usize) -> f32 {
 }
 
 impl Lattice {
-    fn corners(key: Key, range_m: f64) -> Self {
-        let key = key.named("corners");
-        let values = (0..4).map(|i| range_m as f32 * displacement(key, i % 2, i / 2)).collect();
-        Self { level: 0, side: 2, values }
+    fn first(key: Key, range_m: f64, blocks: usize) -> Self {
+        let (key, side) = (key.named("first"), blocks + 1);
+        let values = (0..side * side).map(|i| range_m as f32 * displacement(key, i % side, i / side)).collect();
+        Self { level: 0, side, values }
     }
 
     /// The lattice of half the spacing. Old points keep their heights.
@@ -137,10 +141,10 @@ mod tests {
     #[test]
     fn halving_never_moves_a_point() {
         let key = Key::new(77);
-        let mut lattice = Lattice::corners(key, 1000.0);
+        let mut lattice = Lattice::first(key, 1000.0, 3);
         for level in 0..8 {
             let finer = lattice.halved(key, 1000.0, 0.8);
-            assert_eq!(finer.side, (1 << (level + 1)) + 1);
+            assert_eq!(finer.side, (3 << (level + 1)) + 1);
             for i in 0..lattice.values.len() {
                 let (x, y) = (i % lattice.side, i / lattice.side);
                 assert_eq!(finer.values[2 * y * finer.side + 2 * x], lattice.values[i]);
@@ -156,7 +160,7 @@ mod tests {
         let mut sums = [0.0; 5];
         for seed in 0..40 {
             let key = Key::new(seed);
-            let mut lattice = Lattice::corners(key, 1.0);
+            let mut lattice = Lattice::first(key, 1.0, 1);
             while lattice.side < 257 {
                 lattice = lattice.halved(key, 1.0, hurst);
             }

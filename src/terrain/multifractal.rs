@@ -34,7 +34,7 @@ impl Form {
     /// Hurst exponent that suits the form.
     fn hurst(self) -> f64 {
         match self {
-            Form::Hybrid => 0.5,
+            Form::Hybrid => 0.25,
             Form::Ridged => 0.9,
             Form::Hetero => 0.8,
             Form::Billow | Form::Turbulence => 0.9,
@@ -70,7 +70,7 @@ pub struct MultifractalParams {
     /// Size of the largest features; a third of the map's longer side if not given.
     #[schemars(range(min = 0.001, max = 100000.0), extend("x-unit" = "km", "x-effect" = "fewer, larger ranges"))]
     pub wavelength_km: Option<f64>,
-    /// Hurst exponent; what suits the form if not given (hybrid 0.5, hetero 0.8, others 0.9).
+    /// Hurst exponent; what suits the form if not given (hybrid 0.25, hetero 0.8, others 0.9).
     #[schemars(range(min = 0.05, max = 1.2), extend("x-unit" = "1", "x-effect" = "smoother land"))]
     pub hurst: Option<f64>,
     /// Ratio of the sizes of successive octaves.

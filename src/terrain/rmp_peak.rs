@@ -26,7 +26,7 @@ pub struct RmpPeakParams {
     /// Distance at which the widest octave has fallen to half its height; a tenth of the map's longer side if not given.
     #[schemars(range(min = 0.001, max = 10000.0), extend("x-unit" = "km", "x-effect" = "a broader mountain"))]
     pub half_width_km: Option<f64>,
-    /// Draws in each octave.
+    /// Draws of the widest octave; each narrower one makes half as many.
     #[schemars(range(min = 1, max = 5000), extend("x-unit" = "1", "x-effect" = "smoother slopes, fewer visible polygons"))]
     pub iterations: u32,
     /// Widths raised at once, each half as wide as the one before.
@@ -38,6 +38,9 @@ pub struct RmpPeakParams {
     /// Raises each cell by a random share, so that no flat top shows.
     #[schemars(extend("x-unit" = "1", "x-effect" = "off: every cell rises alike"))]
     pub random_weights: bool,
+    /// Spurs around it, in fives.
+    #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "1", "x-effect" = "more spurs; 0 leaves a smooth cone"))]
+    pub spurs: f64,
 }
 
 impl Default for RmpPeakParams {
@@ -46,10 +49,11 @@ impl Default for RmpPeakParams {
             at_km: None,
             height_m: 3000.0,
             half_width_km: None,
-            iterations: 300,
-            octaves: 3,
-            octave_share: 0.5,
+            iterations: 200,
+            octaves: 5,
+            octave_share: 0.75,
             random_weights: true,
+            spurs: 1.2,
         }
     }
 }
@@ -65,6 +69,7 @@ impl Shape for RmpPeakParams {
             octaves: self.octaves,
             octave_share: self.octave_share,
             random_weights: self.random_weights,
+            spurs: self.spurs,
         };
         massif.heights(grid, context.key.named("rmp-peak"), context)
     }

@@ -30,7 +30,7 @@ pub struct RmpRidgeParams {
     /// Distance at which the widest octave has fallen to half its height; 6 % of the map's longer side if not given.
     #[schemars(range(min = 0.001, max = 10000.0), extend("x-unit" = "km", "x-effect" = "a broader range"))]
     pub half_width_km: Option<f64>,
-    /// Draws in each octave.
+    /// Draws of the widest octave; each narrower one makes half as many.
     #[schemars(range(min = 1, max = 5000), extend("x-unit" = "1", "x-effect" = "smoother slopes, fewer visible polygons"))]
     pub iterations: u32,
     /// Widths raised at once, each half as wide as the one before.
@@ -42,6 +42,9 @@ pub struct RmpRidgeParams {
     /// Raises each cell by a random share, so that no flat top shows.
     #[schemars(extend("x-unit" = "1", "x-effect" = "off: every cell rises alike"))]
     pub random_weights: bool,
+    /// Spurs that leave it to both sides, on each half width of its length.
+    #[schemars(range(min = 0.0, max = 5.0), extend("x-unit" = "1", "x-effect" = "more spurs; 0 leaves a smooth dam"))]
+    pub spurs: f64,
 }
 
 impl Default for RmpRidgeParams {
@@ -51,10 +54,11 @@ impl Default for RmpRidgeParams {
             bend: 0.6,
             height_m: 3000.0,
             half_width_km: None,
-            iterations: 200,
-            octaves: 4,
-            octave_share: 0.6,
+            iterations: 120,
+            octaves: 5,
+            octave_share: 0.75,
             random_weights: true,
+            spurs: 1.0,
         }
     }
 }
@@ -72,6 +76,7 @@ impl Shape for RmpRidgeParams {
             octaves: self.octaves,
             octave_share: self.octave_share,
             random_weights: self.random_weights,
+            spurs: self.spurs,
         };
         massif.heights(grid, key, context)
     }

@@ -2,14 +2,15 @@
 //!
 //! `h'(p) = h(p + a·q(p))` with two independent noises `q = (q₁, q₂)` of unit standard deviation. The map `p → p + a·q(p)`
 //! folds nowhere if `a·‖J‖ < 1` for the Jacobian `J` of `q`; with `fold_free`, `a` is held below 0.9 over the largest
-//! `‖J‖` found on a fixed 128 x 128 raster over the map. Beyond the rim the rim's height is read.
+//! `‖J‖` found on a fixed 128 x 128 raster over the map. Beyond the rim the map is read
+//! mirrored.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Shape, length_m};
 use crate::{
-    grid::{Field, Grid, cubic},
+    grid::{Edges, Field, Grid, cubic},
     noise::{Fbm, Octaves},
     process::{Context, ProcessError},
     world::Layer,
@@ -50,8 +51,9 @@ impl Shape for WarpParams {
         let (bends, amplitude) = self.bends(&grid, context);
         Ok(Field::from_fn(grid, |x, y| {
             let at = grid.center_m(x, y);
-            let [dx, dy] = [amplitude * bends[0].value(at), amplitude * bends[1].value(at)];
-            cubic(ground, [at[0] + dx, at[1] + dy]) as f32
+            let from = [0, 1].map(|i| at[i] + amplitude * bends[i].value(at));
+            let from = if grid.edges == Edges::Wrap { from } else { mirrored(from, grid.extent_m()) };
+            cubic(ground, from) as f32
         }))
     }
 }
@@ -67,6 +69,14 @@ impl WarpParams {
         let limit = if self.fold_free { 0.9 / steepest(&bends, grid) } else { f64::INFINITY };
         (bends, wanted.min(limit))
     }
+}
+
+/// A place beyond the rim mirrored into the map: repeating the rim's height would draw streaks.
+fn mirrored(at_m: [f64; 2], extent_m: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|i| {
+        let turn = at_m[i].rem_euclid(2.0 * extent_m[i]);
+        turn.min(2.0 * extent_m[i] - turn)
+    })
 }
 
 /// The largest norm of the Jacobian on a raster that does not depend on the grid, 1/m.
@@ -86,7 +96,6 @@ fn steepest(bends: &[Octaves; 2], grid: &Grid) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::Edges;
     use std::sync::atomic::AtomicBool;
 
     #[test]
