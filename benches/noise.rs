@@ -6,13 +6,13 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use upthrust::{
     grid::{Edges, Field, Grid},
     noise::{Basis, Fbm, Key},
-    rmp::{self, Arrangement, Raised},
+    rmp::{self, Arrangement, Probe, Raised},
 };
 
 /// Ten octaves over 256² cells.
 fn octaves(c: &mut Criterion) {
     let mut group = c.benchmark_group("noise");
-    let grid = Grid::new(256, 256, 256e3, Edges::Open);
+    let grid = Grid::new(256, 256, 25.6e3, Edges::Open);
     group.throughput(Throughput::Elements(10 * grid.cells() as u64));
     for basis in [Basis::Value, Basis::Gradient, Basis::Simplex] {
         let sum = Fbm { octaves: Some(10.0), basis, ..Fbm::new(100e3, 0.8) }.octaves(Key::new(1), 0.0);
@@ -22,12 +22,23 @@ fn octaves(c: &mut Criterion) {
         });
     }
     let sum = Fbm { octaves: Some(10.0), ..Fbm::new(100e3, 0.8) }.octaves(Key::new(1), 0.0);
-    group.bench_function("hybrid multifractal octaves", |b| b.iter(|| over(grid, |at| sum.hybrid(at, 0.7))));
+    group.bench_function("hybrid multifractal octaves", |b| {
+        b.iter(|| {
+            let mut sampler = sum.sampler();
+            over(grid, |at| sampler.hybrid(at, 0.7))
+        })
+    });
+    group.bench_function("Gradient octaves, sampled along rows", |b| {
+        b.iter(|| {
+            let mut sampler = sum.sampler();
+            over(grid, |at| sampler.value(at))
+        })
+    });
     group.finish();
 }
 
 /// One thread, so that the figure is one core's.
-fn over(grid: Grid, f: impl Fn([f64; 2]) -> f64) -> f64 {
+fn over(grid: Grid, mut f: impl FnMut([f64; 2]) -> f64) -> f64 {
     (0..grid.cells()).map(|i| f(grid.center_m(i % grid.width, i / grid.width))).sum()
 }
 
@@ -36,11 +47,12 @@ fn draws(c: &mut Criterion) {
     let mut group = c.benchmark_group("rmp");
     for (length, sites) in [(0.0, 36), (10.0, 100), (42.0, 300)] {
         let path = [[0.0, 0.0], [length, 0.3 * length]];
+        let probe = Probe::new(&path[..if length > 0.0 { 2 } else { 1 }], 1.0);
         let mut draw = 0;
         group.bench_function(format!("voronoi draw, about {sites} sites"), |b| {
             b.iter(|| {
                 draw += 1;
-                black_box(rmp::cells_along(&path[..if length > 0.0 { 2 } else { 1 }], 1.0, Key::new(1).with(draw)))
+                black_box(probe.cells(Key::new(1).with(draw)))
             })
         });
     }

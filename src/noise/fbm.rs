@@ -9,7 +9,7 @@
 
 use super::{
     Key,
-    lattice::{Basis, Seed},
+    lattice::{Basis, Seed, Square},
 };
 
 /// More octaves than any grid resolves.
@@ -92,12 +92,12 @@ impl Fbm {
 /// A fractal sum made ready for a key and a cell size.
 #[derive(Clone, Debug)]
 pub struct Octaves {
-    pub(super) octaves: Vec<Octave>,
-    pub(super) basis: Basis,
+    octaves: Vec<Octave>,
+    basis: Basis,
     /// Brings the weighted sum to unit standard deviation.
     scale: f64,
     /// Sum of the weights of the whole series.
-    pub(super) total: f64,
+    total: f64,
 }
 
 /// One octave.
@@ -122,7 +122,7 @@ impl Octave {
 
     /// The octave's noise, −1 to 1, without weight or share.
     #[inline(always)]
-    pub(super) fn noise(&self, basis: Basis, at_m: [f64; 2]) -> f64 {
+    fn noise(&self, basis: Basis, at_m: [f64; 2]) -> f64 {
         basis.at(self.seed, self.place(at_m)).0
     }
 
@@ -151,6 +151,11 @@ impl Octaves {
         self.octaves.iter().map(|o| o.weight * o.share * o.noise(basis, at_m)).sum::<f64>() * self.scale
     }
 
+    /// A reader for many places one after the other.
+    pub fn sampler(&self) -> Sampler<'_> {
+        Sampler { sum: self, squares: self.octaves.iter().map(|o| Square::any(o.seed)).collect() }
+    }
+
     /// The sum and its gradient per metre.
     pub fn gradient(&self, at_m: [f64; 2]) -> (f64, [f64; 2]) {
         let (mut value, mut slope) = (0.0, [0.0, 0.0]);
@@ -172,6 +177,43 @@ impl Octaves {
     /// Whether the cells resolve nothing of it.
     pub fn is_empty(&self) -> bool {
         self.octaves.is_empty()
+    }
+}
+
+/// Reads a fractal sum at many places. Where a place lies in the same lattice squares as the one before, the hashes are
+/// spared: about twice as fast along a row of cells. The values are those of [`Octaves`], bit for bit.
+#[derive(Clone, Debug)]
+pub struct Sampler<'a> {
+    sum: &'a Octaves,
+    squares: Vec<Square>,
+}
+
+impl Sampler<'_> {
+    /// [`Octaves::value`].
+    #[inline]
+    pub fn value(&mut self, at_m: [f64; 2]) -> f64 {
+        if self.sum.basis != Basis::Gradient {
+            return self.sum.value(at_m);
+        }
+        self.octaves(at_m).map(|(octave, noise)| octave.weight * octave.share * noise).sum::<f64>() * self.sum.scale
+    }
+
+    /// Sum of the weights of the whole series.
+    pub(super) fn total(&self) -> f64 {
+        self.sum.total
+    }
+
+    /// The octaves and their noises, −1 to 1, without weight or share.
+    #[inline(always)]
+    pub(super) fn octaves(&mut self, at_m: [f64; 2]) -> impl Iterator<Item = (&Octave, f64)> {
+        let basis = self.sum.basis;
+        self.sum.octaves.iter().zip(&mut self.squares).map(move |(octave, square)| {
+            let noise = match basis {
+                Basis::Gradient => square.value(octave.seed, octave.place(at_m)),
+                other => octave.noise(other, at_m),
+            };
+            (octave, noise)
+        })
     }
 }
 
@@ -201,6 +243,20 @@ mod tests {
                     let measured = (shift(step) - shift(-step)) / (2.0 * step);
                     assert!((measured - slope[axis]).abs() < 1e-4 * length.max(1e-3), "{basis:?} {at:?}");
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn a_sampler_gives_the_same_bits() {
+        let mut stream = Key::new(1).stream();
+        for basis in [Basis::Value, Basis::Gradient, Basis::Simplex] {
+            let sum = Fbm { basis, ..Fbm::new(2000.0, 0.7) }.octaves(Key::new(3), 20.0);
+            let mut sampler = sum.sampler();
+            for i in 0..3000 {
+                let start = stream.between(-1e4, 1e4);
+                let at = [if i % 3 == 0 { start } else { i as f64 * 11.0 }, 77.0];
+                assert_eq!(sampler.value(at).to_bits(), sum.value(at).to_bits());
             }
         }
     }

@@ -141,20 +141,16 @@ impl Seed {
     #[inline(always)]
     fn gradient(self, at: [f64; 2]) -> (f64, [f64; 2]) {
         let ((ix, fx), (iy, fy)) = (split(at[0]), split(at[1]));
-        let ((u, du), (v, dv)) = (fade(fx), fade(fy));
+        self.square(ix, iy).gradient(fx, fy)
+    }
+
+    /// The random slopes around a lattice square.
+    #[inline(always)]
+    fn square(self, ix: i32, iy: i32) -> Square {
         let (top, bottom) = (self.row(iy), self.row(iy.wrapping_add(1)));
-        let (ga, gb) = (self.slope(top, ix), self.slope(top, ix.wrapping_add(1)));
-        let (gc, gd) = (self.slope(bottom, ix), self.slope(bottom, ix.wrapping_add(1)));
-        let a = ga[0] * fx + ga[1] * fy;
-        let b = gb[0] * (fx - 1.0) + gb[1] * fy;
-        let c = gc[0] * fx + gc[1] * (fy - 1.0);
-        let d = gd[0] * (fx - 1.0) + gd[1] * (fy - 1.0);
-        let (k1, k2, k3) = (b - a, c - a, a - b - c + d);
-        let n = a + k1 * u + k2 * v + k3 * u * v;
-        let mixed =
-            |i: usize| ga[i] + u * (gb[i] - ga[i]) + v * (gc[i] - ga[i]) + u * v * (ga[i] - gb[i] - gc[i] + gd[i]);
-        let slope = [mixed(0) + du * (k1 + v * k3), mixed(1) + dv * (k2 + u * k3)];
-        (n * GRADIENT_SCALE, [slope[0] * GRADIENT_SCALE, slope[1] * GRADIENT_SCALE])
+        let east = ix.wrapping_add(1);
+        let slopes = [self.slope(top, ix), self.slope(top, east), self.slope(bottom, ix), self.slope(bottom, east)];
+        Square { at: (ix, iy), slopes }
     }
 
     #[inline(always)]
@@ -186,6 +182,45 @@ impl Seed {
             slope[1] += t2 * t2 * g[1] - 8.0 * t3 * r[1] * along;
         }
         (n * SIMPLEX_SCALE, [slope[0] * SIMPLEX_SCALE, slope[1] * SIMPLEX_SCALE])
+    }
+}
+
+/// A lattice square of gradient noise. Kept between neighbouring samples it saves the hashes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Square {
+    at: (i32, i32),
+    slopes: [[f64; 2]; 4],
+}
+
+impl Square {
+    pub(super) fn any(seed: Seed) -> Self {
+        seed.square(0, 0)
+    }
+
+    /// Gradient noise at a point, from this square or the one that it then becomes.
+    #[inline(always)]
+    pub(super) fn value(&mut self, seed: Seed, at: [f64; 2]) -> f64 {
+        let ((ix, fx), (iy, fy)) = (split(at[0]), split(at[1]));
+        if self.at != (ix, iy) {
+            *self = seed.square(ix, iy);
+        }
+        self.gradient(fx, fy).0
+    }
+
+    #[inline(always)]
+    fn gradient(&self, fx: f64, fy: f64) -> (f64, [f64; 2]) {
+        let ((u, du), (v, dv)) = (fade(fx), fade(fy));
+        let [ga, gb, gc, gd] = self.slopes;
+        let a = ga[0] * fx + ga[1] * fy;
+        let b = gb[0] * (fx - 1.0) + gb[1] * fy;
+        let c = gc[0] * fx + gc[1] * (fy - 1.0);
+        let d = gd[0] * (fx - 1.0) + gd[1] * (fy - 1.0);
+        let (k1, k2, k3) = (b - a, c - a, a - b - c + d);
+        let n = a + k1 * u + k2 * v + k3 * u * v;
+        let mixed =
+            |i: usize| ga[i] + u * (gb[i] - ga[i]) + v * (gc[i] - ga[i]) + u * v * (ga[i] - gb[i] - gc[i] + gd[i]);
+        let slope = [mixed(0) + du * (k1 + v * k3), mixed(1) + dv * (k2 + u * k3)];
+        (n * GRADIENT_SCALE, [slope[0] * GRADIENT_SCALE, slope[1] * GRADIENT_SCALE])
     }
 }
 

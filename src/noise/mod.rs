@@ -6,6 +6,6 @@ mod hash;
 mod lattice;
 mod multifractal;
 
-pub use fbm::{Fbm, Octaves};
+pub use fbm::{Fbm, Octaves, Sampler};
 pub use hash::{Key, Stream};
 pub use lattice::{Basis, gradient, simplex, value};

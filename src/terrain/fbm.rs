@@ -5,7 +5,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, length_m};
+use super::{Shape, length_m, sampled};
 use crate::{
     grid::Field,
     noise::{Basis, Fbm},
@@ -70,6 +70,6 @@ impl Shape for FbmParams {
         };
         let sum = fbm.octaves(context.key.named("fbm"), grid.cell_m);
         let (base, scale) = (self.base_m, 0.5 * self.height_m);
-        Ok(Field::from_fn(grid, |x, y| (base + scale * sum.value(grid.center_m(x, y))) as f32))
+        Ok(sampled(grid, &sum, |noise, x, y| base + scale * noise.value(grid.center_m(x, y))))
     }
 }

@@ -29,7 +29,8 @@ pub use terrace::TerraceParams;
 pub use warp::WarpParams;
 
 use crate::{
-    grid::{Field, Grid},
+    grid::{Field, Grid, for_each_row},
+    noise::{Octaves, Sampler},
     process::{Context, Placement, Process, ProcessError, State, Step},
     world::{Layer, World},
 };
@@ -99,4 +100,16 @@ fn length_m(given_km: Option<f64>, share: f64, grid: &Grid) -> f64 {
 fn place_m(given_km: Option<[f64; 2]>, grid: &Grid) -> [f64; 2] {
     let [w, h] = grid.extent_m();
     given_km.map_or([0.5 * w, 0.5 * h], |[x, y]| [x * 1e3, y * 1e3])
+}
+
+/// Heights `f(noise, x, y)` at every cell, with a sampler of `sum` for each row.
+fn sampled(grid: Grid, sum: &Octaves, f: impl Fn(&mut Sampler, usize, usize) -> f64 + Sync) -> Field<f32> {
+    let mut heights = Field::filled(grid, 0.0);
+    for_each_row(&mut heights.data, grid.width, |y, row| {
+        let mut sampler = sum.sampler();
+        for (x, height) in row.iter_mut().enumerate() {
+            *height = f(&mut sampler, x, y) as f32;
+        }
+    });
+    heights
 }

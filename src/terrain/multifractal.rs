@@ -6,10 +6,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, length_m, longer_side_m};
+use super::{Shape, length_m, longer_side_m, sampled};
 use crate::{
     grid::{Field, Grid},
-    noise::{Fbm, Key, Octaves},
+    noise::{Fbm, Key, Sampler},
     process::{Context, ProcessError},
 };
 
@@ -41,7 +41,7 @@ impl Form {
         }
     }
 
-    fn value(self, sum: &Octaves, at_m: [f64; 2], offset: f64) -> f64 {
+    fn value(self, sum: &mut Sampler, at_m: [f64; 2], offset: f64) -> f64 {
         /// Musgrave's own: a signal of one half lets all of the next octave through.
         const GAIN: f64 = 2.0;
         match self {
@@ -111,9 +111,8 @@ impl Shape for MultifractalParams {
         let [low, high] = self.measured_range(&fbm, &grid, key);
         let scale = if high > low { self.height_m / (high - low) } else { 0.0 };
         let sum = fbm.octaves(key, grid.cell_m);
-        Ok(Field::from_fn(grid, |x, y| {
-            let value = self.form.value(&sum, grid.center_m(x, y), self.offset);
-            (self.base_m + scale * (value - low)) as f32
+        Ok(sampled(grid, &sum, |noise, x, y| {
+            self.base_m + scale * (self.form.value(noise, grid.center_m(x, y), self.offset) - low)
         }))
     }
 }
@@ -123,10 +122,12 @@ impl MultifractalParams {
     fn measured_range(&self, fbm: &Fbm, grid: &Grid, key: Key) -> [f64; 2] {
         const PLACES: usize = 4096;
         let sum = fbm.octaves(key, longer_side_m(grid) / 1024.0);
+        let mut sampler = sum.sampler();
         let [w, h] = grid.extent_m();
         let mut stream = key.named("range").stream();
-        let mut values: Vec<f64> =
-            (0..PLACES).map(|_| self.form.value(&sum, [w * stream.unit(), h * stream.unit()], self.offset)).collect();
+        let mut values: Vec<f64> = (0..PLACES)
+            .map(|_| self.form.value(&mut sampler, [w * stream.unit(), h * stream.unit()], self.offset))
+            .collect();
         values.sort_by(f64::total_cmp);
         [values[PLACES / 100], values[PLACES - 1 - PLACES / 100]]
     }

@@ -6,7 +6,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, length_m};
+use super::{Shape, length_m, sampled};
 use crate::{
     grid::Field,
     noise::Fbm,
@@ -55,9 +55,9 @@ impl Shape for TerraceParams {
         let grid = ground.grid;
         let fbm = Fbm { octaves: Some(3.0), ..Fbm::new(length_m(self.wander_km, 0.25, &grid), 0.9) };
         let wander = fbm.octaves(context.key.named("terrace"), 0.0);
-        Ok(Field::from_fn(grid, |x, y| {
-            let phase = self.wander_m * wander.value(grid.center_m(x, y));
-            (self.stepped(ground.at(x, y) as f64 + phase) - phase) as f32
+        Ok(sampled(grid, &wander, |noise, x, y| {
+            let phase = self.wander_m * noise.value(grid.center_m(x, y));
+            self.stepped(ground.at(x, y) as f64 + phase) - phase
         }))
     }
 }

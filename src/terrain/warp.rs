@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Shape, length_m};
 use crate::{
-    grid::{Edges, Field, Grid, cubic},
+    grid::{Edges, Field, Grid, cubic, for_each_row},
     noise::{Fbm, Octaves},
     process::{Context, ProcessError},
     world::Layer,
@@ -49,12 +49,17 @@ impl Shape for WarpParams {
     fn heights(&self, ground: &Field<f32>, context: &Context) -> Result<Field<f32>, ProcessError> {
         let grid = ground.grid;
         let (bends, amplitude) = self.bends(&grid, context);
-        Ok(Field::from_fn(grid, |x, y| {
-            let at = grid.center_m(x, y);
-            let from = [0, 1].map(|i| at[i] + amplitude * bends[i].value(at));
-            let from = if grid.edges == Edges::Wrap { from } else { mirrored(from, grid.extent_m()) };
-            cubic(ground, from) as f32
-        }))
+        let mut heights = Field::filled(grid, 0.0);
+        for_each_row(&mut heights.data, grid.width, |y, row| {
+            let mut bends = [bends[0].sampler(), bends[1].sampler()];
+            for (x, height) in row.iter_mut().enumerate() {
+                let at = grid.center_m(x, y);
+                let from = [0, 1].map(|i| at[i] + amplitude * bends[i].value(at));
+                let from = if grid.edges == Edges::Wrap { from } else { mirrored(from, grid.extent_m()) };
+                *height = cubic(ground, from) as f32;
+            }
+        });
+        Ok(heights)
     }
 }
 

@@ -81,7 +81,7 @@ fn roughness_low_and_high(value: impl Fn(&Fbm, [f64; 2]) -> f64) -> (f64, f64) {
 #[test]
 fn hybrid_is_smooth_in_valleys_and_fbm_is_not() {
     let key = Key::new(3);
-    let (low, high) = roughness_low_and_high(|fbm, at| fbm.octaves(key, 0.0).hybrid(at, 0.7));
+    let (low, high) = roughness_low_and_high(|fbm, at| fbm.octaves(key, 0.0).sampler().hybrid(at, 0.7));
     assert!(high > 3.0 * low, "hybrid: {low} below, {high} above");
     // Undo the scale, which follows the number of octaves asked for, so that the difference is the fine octaves alone.
     let scale = |octaves: f64| {
