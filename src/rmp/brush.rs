@@ -1,4 +1,4 @@
-//! Convex outlines to raster cells: the share of each cell that an outline covers.
+//! Outlines to raster cells: the share of each cell that an outline covers. Outlines are simple polygons, convex or not.
 //!
 //! tiny-skia's scan converter takes sixteen samples a cell, so a cell's share is good to about a sixteenth. Outlines are
 //! in raster cells, `0..width` to the east and `0..height` to the south.
@@ -14,7 +14,7 @@ const TILE: usize = 1024;
 /// Rows that one task of [`raise`] fills. Fixed, so that the result does not depend on the number of threads.
 const BAND: usize = 128;
 
-/// Scan-converts convex outlines; keeps its mask between calls and touches only the outline's bounding box.
+/// Scan-converts outlines; keeps its mask between calls and touches only the outline's bounding box.
 #[derive(Debug, Default)]
 pub struct Brush {
     mask: Option<Mask>,
@@ -68,7 +68,7 @@ impl Brush {
     }
 }
 
-/// A convex outline in raster cells, and how much the cells that it covers rise.
+/// An outline in raster cells, and how much the cells that it covers rise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raised {
     /// Corners in order, in raster cells.
@@ -125,7 +125,8 @@ impl Window {
     }
 }
 
-/// The part of a convex outline inside `[left, top, right, bottom]` (Sutherland and Hodgman 1974).
+/// The part of an outline inside `[left, top, right, bottom]` (Sutherland and Hodgman 1974). A hollow one may keep edges
+/// along the border that enclose nothing.
 fn clip(outline: &[[f64; 2]], part: [usize; 4]) -> Vec<[f64; 2]> {
     let mut piece = outline.to_vec();
     let mut next = Vec::with_capacity(piece.len() + 4);

@@ -3,7 +3,7 @@
 //! `h = base + Σ ±δ_i·S(dist_i/w)` with a smooth odd step `S`. Lines are uniform among those that meet the map (direction
 //! and offset uniform, misses drawn again), so with sharp steps and equal `δ` the mean square difference of two points is
 //! `8·n·δ²·d/P` for a distance `d` and the map's perimeter `P`: a Brownian surface, H = ½. Without random signs the map
-//! would tilt.
+//! would tilt. The mean over the map is taken off.
 //!
 //! A row needs work only where it crosses a fault: steps are stored as differences along the row and summed once.
 
@@ -57,10 +57,11 @@ impl Shape for FaultParams {
         let faults = self.faults(&grid, context.key.named("fault"));
         // A slope narrower than a cell is drawn as wide as one: the cell's mean over a sharp step.
         let half_width_m = 0.5 * length_m(self.width_km, 0.01, &grid).max(grid.cell_m);
+        let level_m = self.base_m - mean_step(&faults, &grid);
         let mut heights = Field::filled(grid, 0.0);
         for_each_row(&mut heights.data, grid.width, |y, row| {
             let mut sum = vec![0.0; grid.width];
-            sum[0] = self.base_m;
+            sum[0] = level_m;
             let [x0, py] = grid.center_m(0, y);
             for fault in &faults {
                 let first = (x0 * fault.normal[0] + py * fault.normal[1] - fault.offset_m) / half_width_m;
@@ -100,6 +101,23 @@ impl FaultParams {
             })
             .collect()
     }
+}
+
+/// Mean of all steps over the map, from 32 x 32 places whatever the grid: a map that lies mostly to one side of its large
+/// faults is not to stand high or low as a whole.
+fn mean_step(faults: &[Fault], grid: &Grid) -> f64 {
+    const SIDE: usize = 32;
+    let [w, h] = grid.extent_m();
+    let place = |i: usize| [(i % SIDE) as f64 + 0.5, (i / SIDE) as f64 + 0.5];
+    let sum: f64 = (0..SIDE * SIDE)
+        .map(place)
+        .flat_map(|[x, y]| {
+            let at = [x / SIDE as f64 * w, y / SIDE as f64 * h];
+            let side = move |f: &Fault| at[0] * f.normal[0] + at[1] * f.normal[1] - f.offset_m;
+            faults.iter().map(move |f| if side(f) < 0.0 { -f.delta_m } else { f.delta_m })
+        })
+        .sum();
+    sum / (SIDE * SIDE) as f64
 }
 
 /// Odd, smooth, −1 to 1 over −1 to 1.

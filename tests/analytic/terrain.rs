@@ -159,7 +159,14 @@ fn one_octave_of_a_peak_follows_the_profile() {
 
 #[test]
 fn a_graph_of_one_face_halves_by_the_closed_form() {
-    let params = RmpGraphParams { cuts: 12, faces: 1, iterations: 4000, height_m: 1000.0, ..RmpGraphParams::default() };
+    let params = RmpGraphParams {
+        cuts: 12,
+        faces: 1,
+        iterations: 4000,
+        height_m: 1000.0,
+        bend: 0.0,
+        ..RmpGraphParams::default()
+    };
     let field = grown(vec![put(params)], Grid::new(200, 150, 200e3, Edges::Open), 3);
     for d in [10usize, 30, 50] {
         let around = [(100 + d, 75), (99 - d, 75)];
