@@ -2,7 +2,9 @@
 
 #![warn(missing_docs)]
 
+pub mod export;
 pub mod grid;
+pub mod measure;
 pub mod noise;
 pub mod process;
 pub mod rmp;

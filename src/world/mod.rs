@@ -5,6 +5,7 @@
 mod catalogue;
 mod ledger;
 mod mask;
+pub mod store;
 mod table;
 
 pub use catalogue::{Kind, Layer, Palette, Spec};

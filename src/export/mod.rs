@@ -1,0 +1,77 @@
+//! Files for other programs: one format a file here.
+//!
+//! | ending | holds | written by |
+//! |---|---|---|
+//! | `.png` | heights, 16-bit grayscale | [`write_height_png`] |
+//!
+//! A file is written beside its place and moved there when it is whole. This room reads worlds and never changes them.
+
+mod height_png;
+
+pub use height_png::{HeightRange, write_height_png};
+
+use std::{
+    fs::{self, File},
+    io::{self, BufWriter, Write},
+    path::{Path, PathBuf},
+};
+
+/// Why a file could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// The disk refused.
+    #[error("{path}: {cause}")]
+    Disk {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// The picture could not be encoded.
+    #[error("{path}: cannot encode the picture: {cause}")]
+    Encode {
+        /// The file.
+        path: PathBuf,
+        /// What the encoder said.
+        cause: String,
+    },
+    /// The heights hold a value that is not a number.
+    #[error("height is not finite at cell ({x}, {y})")]
+    NotFinite {
+        /// Column of the cell.
+        x: usize,
+        /// Row of the cell.
+        y: usize,
+    },
+}
+
+/// Lets `fill` write a file beside `path`, and moves it there when it is whole.
+pub fn write_whole(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), ExportError>,
+) -> Result<(), ExportError> {
+    let disk = |cause| ExportError::Disk { path: path.to_owned(), cause };
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let beside = path.with_file_name(format!(".{name}.partial-{}", std::process::id()));
+    let written = File::create(&beside).map_err(disk).and_then(|file| {
+        let mut file = BufWriter::new(file);
+        fill(&mut file)?;
+        file.flush().map_err(disk)?;
+        fs::rename(&beside, path).map_err(disk)
+    });
+    if written.is_err() {
+        // The first error matters; there may be nothing to clean up.
+        let _ = fs::remove_file(&beside);
+    }
+    written
+}
+
+/// Writes a picture as a PNG.
+pub fn write_picture(picture: &image::RgbImage, path: &Path) -> Result<(), ExportError> {
+    use image::{ExtendedColorType, ImageEncoder, codecs::png};
+    write_whole(path, |file| {
+        png::PngEncoder::new_with_quality(file, png::CompressionType::Default, png::FilterType::Adaptive)
+            .write_image(picture.as_raw(), picture.width(), picture.height(), ExtendedColorType::Rgb8)
+            .map_err(|e| ExportError::Encode { path: path.to_owned(), cause: e.to_string() })
+    })
+}
