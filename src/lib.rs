@@ -9,4 +9,5 @@ pub mod noise;
 pub mod process;
 pub mod rmp;
 pub mod terrain;
+pub mod relief;
 pub mod world;

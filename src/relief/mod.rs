@@ -1,0 +1,136 @@
+//! Pictures of a world on the CPU: the shaded relief map one would hang on a wall, and any layer by its palette, with
+//! legend, scale bar, plate borders and motions.
+//!
+//! A picture is made in passes over its pixels, rows in parallel: heights are brought to the picture's raster
+//! (`frame`), lit (`shade`), coloured by height (`tint`, `palette`), the coast is drawn (`coast`), plates are laid over
+//! it (`overlay`), and what stands around the map is added (`furniture`, `text`). Same world, same bits, for any
+//! number of threads.
+//!
+//! This room reads worlds and never changes them; it knows no process and no GPU.
+
+mod blur;
+mod coast;
+mod frame;
+mod furniture;
+mod layers;
+mod marks;
+mod overlay;
+mod palette;
+mod shade;
+mod sheet;
+mod text;
+mod tint;
+
+pub use sheet::contact_sheet;
+
+use image::RgbImage;
+
+use crate::world::{Layer, World};
+use frame::Frame;
+
+/// What the map shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum View {
+    /// Land and sea, shaded and coloured by height.
+    #[default]
+    Relief,
+    /// One layer by its palette.
+    Layer(Layer),
+}
+
+/// How the map is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Plate borders and motions over the map, where the world has plates.
+    pub overlay: bool,
+    /// Margin, legend, scale bar and title around the map. Without it the picture is the map alone.
+    pub furniture: bool,
+    /// A larger world is averaged in blocks until its longer side fits, pixels.
+    pub max_px: usize,
+    /// A smaller world is drawn that many whole times larger that its longer side reaches this, pixels.
+    pub min_px: usize,
+    /// The line above the map.
+    pub title: Option<String>,
+    /// Vertical exaggeration of the light; chosen from the land's own slopes where absent. A film fixes it.
+    pub exaggeration: Option<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { overlay: false, furniture: true, max_px: 2048, min_px: 512, title: None, exaggeration: None }
+    }
+}
+
+impl Options {
+    /// The map alone, at most `max_px` on its longer side and never enlarged: for previews, sheets and films.
+    pub fn bare(max_px: usize) -> Self {
+        Self { furniture: false, max_px, min_px: 0, ..Self::default() }
+    }
+}
+
+/// Why there is no picture.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ReliefError {
+    /// No process made the layer.
+    #[error("this world has no layer '{layer}' (it has {present})")]
+    Absent {
+        /// The layer asked for.
+        layer: &'static str,
+        /// Those that can be drawn.
+        present: String,
+    },
+    /// A value is not a number.
+    #[error("layer '{layer}' is not finite at cell ({x}, {y})")]
+    NotFinite {
+        /// The layer.
+        layer: &'static str,
+        /// Column of the cell.
+        x: usize,
+        /// Row of the cell.
+        y: usize,
+    },
+    /// The picture has more pixels than a file can hold.
+    #[error("a picture of {0} x {1} pixels is too large")]
+    TooLarge(usize, usize),
+}
+
+/// Draws the world.
+pub fn map(world: &World, view: &View, options: &Options) -> Result<RgbImage, ReliefError> {
+    let frame = Frame::new(world.grid, options.max_px, options.min_px);
+    let (width, height) = (frame.grid.width, frame.grid.height);
+    if width.max(height) > 32_000 || width.saturating_mul(height) > marks::MOST_PIXELS {
+        return Err(ReliefError::TooLarge(width, height));
+    }
+    let ground = finite(Layer::Height, world.height())?;
+    let heights = frame.continuous(&ground);
+    let scene = tint::Scene::new(&ground, world.sea_level_m);
+    let (pixels, legend) = match view {
+        View::Relief => (tint::relief(&frame, &heights, &scene, options), furniture::Legend::heights(&scene)),
+        View::Layer(layer) => {
+            let field = world.view(*layer).ok_or_else(|| absent(world, *layer))?;
+            let field = finite(*layer, field)?;
+            layers::draw(&frame, *layer, &field, &heights, &scene, options)
+        }
+    };
+    let mut canvas = marks::Canvas::from_linear(frame.grid, &pixels);
+    let mut symbols = Vec::new();
+    if options.overlay {
+        symbols = overlay::draw(&mut canvas, &frame, world);
+    }
+    if options.furniture {
+        canvas = furniture::surround(canvas, &frame, &legend, &symbols, options.title.as_deref());
+    }
+    Ok(canvas.into_image())
+}
+
+fn finite(layer: Layer, field: crate::grid::Field<f32>) -> Result<crate::grid::Field<f32>, ReliefError> {
+    match field.first_non_finite() {
+        Some((x, y)) => Err(ReliefError::NotFinite { layer: layer.name(), x, y }),
+        None => Ok(field),
+    }
+}
+
+fn absent(world: &World, layer: Layer) -> ReliefError {
+    let present: Vec<&str> = world.viewable().into_iter().map(Layer::name).collect();
+    ReliefError::Absent { layer: layer.name(), present: present.join(", ") }
+}

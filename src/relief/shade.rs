@@ -1,0 +1,117 @@
+//! Light on the ground.
+//!
+//! Five lights of different strength, mainly from the north-west, as cartographers hold the lamp (Imhof 1965; several
+//! directions after Mark 1992). The normal is that of a blend of the ground and of two smoother copies of it
+//! (resolution bumping, Patterson), so that great ranges read as one body and crests still as crests. A term for how
+//! high a place stands over its surroundings darkens valleys and lightens ridges, as a soft sky does. Slopes are
+//! exaggerated until the land's typical slope is a good one to light, then bent so that the steepest keep detail.
+
+use super::{blur::blur, frame::Frame};
+use crate::grid::{Field, sum_rows};
+
+/// Compass azimuth and altitude in degrees, and weight.
+const LIGHTS: [(f64, f64, f64); 5] =
+    [(315.0, 42.0, 0.60), (275.0, 36.0, 0.15), (355.0, 36.0, 0.15), (225.0, 32.0, 0.05), (45.0, 32.0, 0.05)];
+/// Root mean square of the exaggerated slope that is aimed at.
+const TYPICAL: f64 = 0.62;
+/// Slopes beyond this are bent towards it.
+const STEEP: f64 = 1.7;
+/// Flat worlds stay flat: no more than this.
+const MOST: f64 = 90.0;
+/// Blur of the three copies, in thousandths of the picture's side, and their share in the slope.
+const SCALES: [(f64, f64); 3] = [(0.0, 0.50), (2.5, 0.55), (10.0, 0.75)];
+/// Least blur of each, pixels: single cells are not terrain.
+const LEAST_PX: [f64; 3] = [0.55, 1.4, 3.0];
+
+/// How bright each pixel is: 0 as flat ground, −1 black shadow, 1 full light.
+pub fn shade(
+    frame: &Frame,
+    z: &Field<f32>,
+    counts: impl Fn(f32) -> bool + Sync,
+    exaggeration: Option<f64>,
+) -> Field<f32> {
+    let side = z.grid.width.max(z.grid.height) as f64;
+    let sigma = |i: usize| (SCALES[i].0 * side / 1000.0).max(LEAST_PX[i]);
+    let copies = [0, 1, 2].map(|i| blur(z, sigma(i)));
+    let factor = exaggeration.unwrap_or_else(|| typical_exaggeration(&copies[0], counts)) as f32;
+    let lights = LIGHTS.map(|(azimuth, altitude, weight)| {
+        let (a, h) = (f64::to_radians(azimuth), f64::to_radians(altitude));
+        [libm::sin(a) * libm::cos(h), -libm::cos(a) * libm::cos(h), libm::sin(h)].map(|v| (v * weight) as f32)
+    });
+    let flat: f32 = lights.iter().map(|l| l[2]).sum();
+    // Height over the surroundings, in units of a slope of one across the blur.
+    let per_m = factor / (sigma(2) * frame.grid.cell_m) as f32;
+    Field::from_fn(z.grid, |x, y| {
+        let mut g = [0.0f32; 2];
+        for (copy, (_, share)) in copies.iter().zip(SCALES) {
+            let [gx, gy] = slope(copy, x, y);
+            g = [g[0] + gx * share as f32, g[1] + gy * share as f32];
+        }
+        let [gx, gy] = g.map(|v| v * factor);
+        let steep = (gx * gx + gy * gy) / (STEEP * STEEP) as f32;
+        let bend = 1.0 / (1.0 + steep).sqrt();
+        let (gx, gy) = (gx * bend, gy * bend);
+        let norm = 1.0 / (1.0 + gx * gx + gy * gy).sqrt();
+        let lit: f32 = lights.iter().map(|l| ((l[2] - gx * l[0] - gy * l[1]) * norm).max(0.0)).sum();
+        let tone = if lit > flat { (lit - flat) / (1.0 - flat) } else { (lit - flat) / flat };
+        let over = (z.at(x, y) - copies[2].at(x, y)) * per_m;
+        let sky = 0.16 * over / (1.0 + over * over).sqrt();
+        (tone + sky).clamp(-1.0, 1.0)
+    })
+}
+
+/// Central differences, one-sided at the rim.
+fn slope(z: &Field<f32>, x: usize, y: usize) -> [f32; 2] {
+    let g = &z.grid;
+    let per = (0.5 / g.cell_m) as f32;
+    [(z.at(g.column(x, 1), y) - z.at(g.column(x, -1), y)) * per, (z.at(x, g.row(y, 1)) - z.at(x, g.row(y, -1))) * per]
+}
+
+/// The factor that gives the pixels that count a typical slope.
+fn typical_exaggeration(z: &Field<f32>, counts: impl Fn(f32) -> bool + Sync) -> f64 {
+    let over = |f: &(dyn Fn(usize, usize) -> f64 + Sync)| {
+        sum_rows(z.grid.height, |y| (0..z.grid.width).filter(|&x| counts(z.at(x, y))).map(|x| f(x, y)).sum())
+    };
+    let count = over(&|_, _| 1.0);
+    let squares = over(&|x, y| {
+        let [gx, gy] = slope(z, x, y).map(f64::from);
+        gx * gx + gy * gy
+    });
+    let typical = if count > 0.0 { (squares / count).sqrt() } else { 0.0 };
+    (TYPICAL / typical.max(TYPICAL / MOST)).max(0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Edges, Grid};
+
+    fn cone(cell_m: f64) -> (Frame, Field<f32>) {
+        let grid = Grid { width: 128, height: 128, cell_m, edges: Edges::Open };
+        let frame = Frame::new(grid, 128, 0);
+        let z = Field::from_fn(grid, |x, y| {
+            let r = ((x as f64 - 63.5).powi(2) + (y as f64 - 63.5).powi(2)).sqrt();
+            ((50.0 - r).max(0.0) * 10.0) as f32
+        });
+        (frame, z)
+    }
+
+    #[test]
+    fn light_comes_from_the_north_west_and_flat_ground_is_neutral() {
+        let (frame, z) = cone(100.0);
+        let tone = shade(&frame, &z, |h| h > 0.0, None);
+        assert!(tone.at(45, 45) > 0.3 && tone.at(82, 82) < -0.3, "{} {}", tone.at(45, 45), tone.at(82, 82));
+        assert_eq!(tone.at(1, 1), 0.0);
+    }
+
+    #[test]
+    fn a_hill_and_a_continent_of_the_same_form_look_the_same() {
+        let [hill, continent] = [10.0, 1000.0].map(|cell_m| {
+            let (frame, z) = cone(cell_m);
+            shade(&frame, &z, |h| h > 0.0, None)
+        });
+        // A slope of 1 and one of 0.01: both within what is exaggerated, so equal but for rounding.
+        let apart = hill.data.iter().zip(&continent.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(apart < 1e-3, "{apart}");
+    }
+}

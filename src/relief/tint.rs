@@ -1,0 +1,164 @@
+//! Hypsometric tints: colour by height, with a break at sea level.
+//!
+//! Where a world has real relief, a colour stands for the same metres on every map: green lowland, buff, brown, grey
+//! rock, white only where snow would lie; the shelf pale, the abyss blue, trenches dark. A small world spreads the same
+//! colours over its own heights, without the snow.
+
+use super::{
+    Options,
+    coast::Coast,
+    frame::Frame,
+    palette::{Ramp, Rgb, hex, mix},
+    shade::shade,
+};
+use crate::grid::Field;
+
+/// Metres over the sea.
+const LAND: [(f64, u32); 11] = [
+    (0.0, 0x5f9463),
+    (120.0, 0x7aa668),
+    (350.0, 0xa3ba72),
+    (700.0, 0xcfc980),
+    (1200.0, 0xd9b973),
+    (1900.0, 0xc29357),
+    (2700.0, 0xa06f45),
+    (3500.0, 0x8a6450),
+    (4200.0, 0x9c8f89),
+    (5000.0, 0xd3d1d3),
+    (5800.0, 0xffffff),
+];
+/// Metres over the sea, from the deepest.
+const SEA: [(f64, u32); 9] = [
+    (-10000.0, 0x0b1838),
+    (-7500.0, 0x142a58),
+    (-6000.0, 0x1d4078),
+    (-4500.0, 0x2a5c98),
+    (-3000.0, 0x3f7db3),
+    (-1500.0, 0x66a3c9),
+    (-250.0, 0x9bcbdd),
+    (-60.0, 0xb4dde3),
+    (0.0, 0xc6e8e6),
+];
+/// Relief from which colours stand for absolute metres.
+const ABSOLUTE_M: f64 = 1500.0;
+/// A small world's highest land gets the colour of this height.
+const SMALL_TOP_M: f64 = 4000.0;
+/// A small world's deepest sea gets the colour of this height.
+const SMALL_BOTTOM_M: f64 = -4500.0;
+
+/// What a world's heights are coloured by.
+pub struct Scene {
+    /// Sea level, m.
+    pub sea_m: f64,
+    /// Lowest and highest ground, m.
+    pub range_m: [f64; 2],
+    land: Ramp,
+    sea: Ramp,
+}
+
+impl Scene {
+    /// The tints for a world of these heights.
+    pub fn new(height: &Field<f32>, sea_m: f64) -> Self {
+        let (low, high) = height.range().map_or((0.0, 0.0), |(a, b)| (a as f64, b as f64));
+        let (bottom, top) = (low.max(sea_m), high.max(sea_m));
+        let absolute = high - low > ABSOLUTE_M;
+        // Land far above the sea starts at its own foot.
+        let anchor = if absolute || bottom - sea_m < 0.5 * (top - bottom) { sea_m } else { bottom };
+        let up = if absolute { 1.0 } else { (top - anchor).max(1.0) / SMALL_TOP_M };
+        let down = if absolute { 1.0 } else { (low - sea_m).min(-1.0) / SMALL_BOTTOM_M };
+        let scaled = |stops: &[(f64, u32)], from: f64, by: f64| {
+            Ramp::new(&stops.iter().map(|&(m, code)| (from + m * by, code)).collect::<Vec<_>>())
+        };
+        Self { sea_m, range_m: [low, high], land: scaled(&LAND, anchor, up), sea: scaled(&SEA, sea_m, down) }
+    }
+
+    /// The colour of dry land at a height.
+    pub fn land(&self, height_m: f32) -> Rgb {
+        self.land.at(height_m)
+    }
+
+    /// The colour of sea over a floor at a height.
+    pub fn sea(&self, height_m: f32) -> Rgb {
+        self.sea.at(height_m)
+    }
+
+    /// The flat colour of a height.
+    pub fn at(&self, height_m: f32) -> Rgb {
+        if height_m as f64 > self.sea_m { self.land(height_m) } else { self.sea(height_m) }
+    }
+}
+
+/// The shaded, coloured map, in linear light.
+pub fn relief(frame: &Frame, heights: &Field<f32>, scene: &Scene, options: &Options) -> Vec<Rgb> {
+    let sea = scene.sea_m as f32;
+    let has_land = scene.range_m[1] > scene.sea_m;
+    let tone = shade(frame, heights, |h| h > sea || !has_land, options.exaggeration);
+    let coast = Coast::new(heights, sea);
+    let unit = frame.unit();
+    let mut pixels = vec![[0.0; 3]; frame.grid.cells()];
+    let (ink, glow) = (hex(0x24455a), hex(0xdff3ee));
+    crate::grid::map_cells(&mut pixels, frame.grid.width, |x, y| {
+        let (h, tone, land) = (heights.at(x, y), tone.at(x, y), coast.land.at(x, y));
+        let wet = || {
+            let halo = 0.42 * libm::expf(-coast.offshore_px.at(x, y) / (5.0 * unit));
+            lit(mix(scene.sea(h.min(sea)), glow, halo), tone * 0.42)
+        };
+        let dry = || lit(scene.land(h.max(sea)), tone);
+        let ground = match land {
+            0.0 => wet(),
+            1.0 => dry(),
+            share => mix(wet(), dry(), share),
+        };
+        let line = (0.5 + 0.45 * unit - coast.line_px.at(x, y)).clamp(0.0, 1.0);
+        mix(ground, ink, 0.62 * line)
+    });
+    pixels
+}
+
+/// A colour under light: shadows cool, light warm, as on painted maps.
+pub fn lit(colour: Rgb, tone: f32) -> Rgb {
+    const SHADOW: Rgb = [0.055, 0.07, 0.15];
+    const LIGHT: Rgb = [1.0, 0.96, 0.84];
+    if tone < 0.0 {
+        let t = -tone;
+        [0, 1, 2].map(|c| colour[c] * (1.0 - t + t * (SHADOW[c] * 1.2)))
+    } else {
+        [0, 1, 2].map(|c| colour[c] + (LIGHT[c] - colour[c]).max(0.0) * tone * 0.62)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Edges, Grid};
+
+    fn scene(low: f32, high: f32, sea_m: f64) -> Scene {
+        let mut field = Field::filled(Grid::new(2, 1, 2.0, Edges::Open), low);
+        field.data[1] = high;
+        Scene::new(&field, sea_m)
+    }
+
+    #[test]
+    fn large_worlds_share_their_colours_and_small_ones_use_all() {
+        let (alps, andes) = (scene(-200.0, 4800.0, 0.0), scene(-8000.0, 6500.0, 0.0));
+        assert_eq!(alps.at(1000.0), andes.at(1000.0));
+        let hill = scene(-20.0, 120.0, 0.0);
+        let close = |a: Rgb, b: Rgb| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-3);
+        assert!(close(hill.at(120.0), andes.at(4000.0)) && close(hill.at(-20.0), andes.at(-4500.0)));
+        assert!(close(scene(1000.0, 1200.0, 0.0).at(1000.0), andes.at(0.1)));
+        assert!(close(scene(90.0, 200.0, 100.0).at(99.0), andes.at(-450.0)));
+    }
+
+    #[test]
+    fn sea_is_bluer_than_land_everywhere() {
+        let scene = scene(-9000.0, 7000.0, 0.0);
+        for m in 1..9000 {
+            let [r, _, b] = scene.at(-m as f32);
+            assert!(b > r * 1.2, "{m}");
+        }
+        for m in 1..5000 {
+            let [r, g, b] = scene.at(m as f32);
+            assert!(b < r.max(g) * 1.02, "{m}");
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Pictures of a small made-up world, compared byte for byte with those kept beside this file.
+//!
+//! The CPU pictures are deterministic, so there is no tolerance. `UPDATE_GOLDEN=1 cargo test --release --test golden`
+//! renews them on purpose; look at them before committing. `cargo test --release --test golden -- --ignored` draws the
+//! same world large, for the eye.
+
+mod sample;
+
+use std::path::{Path, PathBuf};
+
+use image::RgbImage;
+use upthrust::{
+    export,
+    relief::{self, Options, View},
+    world::{Layer, World},
+};
+
+/// Kept small: a picture in the repository.
+const MOST_BYTES: u64 = 40_000;
+
+fn check(name: &str, picture: &RgbImage) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name).with_extension("png");
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        export::write_picture(picture, &path).unwrap();
+    }
+    assert!(std::fs::metadata(&path).unwrap().len() < MOST_BYTES, "{name} is too large to keep");
+    let golden = image::open(&path).unwrap().into_rgb8();
+    assert_eq!(golden.dimensions(), picture.dimensions(), "{name}: size");
+    let apart = golden.pixels().zip(picture.pixels()).filter(|(a, b)| a != b).count();
+    if apart > 0 {
+        let seen = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name).with_extension("png");
+        export::write_picture(picture, &seen).unwrap();
+        panic!("{name}: {apart} pixels differ; now: {}", seen.display());
+    }
+}
+
+fn draw(world: &World, view: View, options: &Options) -> RgbImage {
+    relief::map(world, &view, options).unwrap()
+}
+
+#[test]
+fn bare_relief() {
+    check("relief", &draw(&sample::world(96, 96), View::Relief, &Options::bare(96)));
+}
+
+#[test]
+fn a_larger_world_is_averaged_to_nearly_the_same_picture() {
+    let small = draw(&sample::world(96, 96), View::Relief, &Options::bare(96));
+    let large = draw(&sample::world(384, 384), View::Relief, &Options::bare(96));
+    let apart: u64 = small.iter().zip(large.iter()).map(|(a, b)| a.abs_diff(*b) as u64).sum();
+    let mean = apart as f64 / small.len() as f64;
+    assert!(mean < 14.0, "{mean} of 255 on average");
+}
+
+#[test]
+fn furnished_map_with_plates() {
+    let options = Options { overlay: true, min_px: 192, title: Some("Sample".into()), ..Options::default() };
+    check("furnished", &draw(&sample::world(96, 64), View::Relief, &options));
+}
+
+#[test]
+fn layers_by_their_palettes() {
+    let world = sample::world(96, 96);
+    for layer in [Layer::PlateId, Layer::CrustAge, Layer::BoundaryKind] {
+        check(layer.name(), &draw(&world, View::Layer(layer), &Options::bare(96)));
+    }
+}
+
+#[test]
+fn same_picture_for_any_number_of_threads() {
+    let world = sample::world(200, 130);
+    let options = Options { overlay: true, ..Options::default() };
+    let pictures = [1, 2, 8].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| draw(&world, View::Relief, &options))
+    });
+    assert!(pictures.iter().all(|picture| *picture == pictures[0]));
+}
+
+#[test]
+fn odd_worlds_have_pictures_and_bad_ones_one_line() {
+    use upthrust::grid::{Edges, Grid};
+    for (w, h) in [(1, 1), (1, 700), (300, 2), (3, 5)] {
+        let mut world = World::new(Grid::new(w, h, 1000.0, Edges::Open), 0.0);
+        for view in [View::Relief, View::Layer(Layer::Slope)] {
+            draw(&world, view, &Options { overlay: true, title: Some("x".repeat(300)), ..Options::default() });
+        }
+        let absent = relief::map(&world, &View::Layer(Layer::Hardness), &Options::default()).unwrap_err();
+        assert_eq!(absent.to_string(), "this world has no layer 'hardness' (it has height, slope)");
+        world.layer_mut(Layer::Bedrock).data[0] = f32::INFINITY;
+        let bad = relief::map(&world, &View::Relief, &Options::default()).unwrap_err();
+        assert_eq!(bad.to_string(), "layer 'height' is not finite at cell (0, 0)");
+    }
+}
+
+#[test]
+#[ignore = "draws for the eye, checks nothing"]
+fn pictures_for_the_eye() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    let world = sample::world(1024, 1024);
+    let time = std::time::Instant::now();
+    let relief = draw(&world, View::Relief, &Options::bare(1024));
+    println!("bare relief at 1024: {:.3} s", time.elapsed().as_secs_f64());
+    let mut pictures = vec![("bare".to_owned(), relief)];
+    for (overlay, name) in [(false, "map"), (true, "plates")] {
+        let time = std::time::Instant::now();
+        let options = Options { overlay, title: Some("Continental collision".into()), ..Options::default() };
+        pictures.push((name.to_owned(), draw(&world, View::Relief, &options)));
+        println!("{name} at 1024: {:.3} s", time.elapsed().as_secs_f64());
+    }
+    let small = sample::hill(300, 300);
+    pictures.push(("hill".to_owned(), draw(&small, View::Relief, &Options::default())));
+    for layer in world.viewable() {
+        pictures.push((
+            layer.name().to_owned(),
+            draw(&world, View::Layer(layer), &Options { max_px: 700, ..Options::default() }),
+        ));
+    }
+    let thumbs: Vec<(String, RgbImage)> = (0..8)
+        .map(|i| (format!("sample {i}"), draw(&sample::world(128 + i, 128), View::Relief, &Options::bare(128))))
+        .collect();
+    pictures.push(("sheet".to_owned(), relief::contact_sheet(&thumbs, 4)));
+    for (name, picture) in pictures {
+        export::write_picture(&picture, &folder.join(format!("{name}.png"))).unwrap();
+    }
+    let time = std::time::Instant::now();
+    let provenance = upthrust::world::store::Provenance::default();
+    upthrust::world::store::write(&world, &provenance, &folder.join("world.zarr")).unwrap();
+    println!("store at 1024: {:.3} s", time.elapsed().as_secs_f64());
+    let time = std::time::Instant::now();
+    assert!(upthrust::world::store::read(&folder.join("world.zarr")).unwrap().0 == world);
+    println!("read back: {:.3} s", time.elapsed().as_secs_f64());
+    let time = std::time::Instant::now();
+    println!("{}", upthrust::measure::inspect(&world));
+    println!("inspect: {:.3} s", time.elapsed().as_secs_f64());
+    export::write_height_png(&world, &folder.join("height.png")).unwrap();
+    println!("{}", folder.display());
+}
