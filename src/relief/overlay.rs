@@ -236,7 +236,7 @@ fn motions(canvas: &mut Canvas, frame: &Frame, world: &World) -> bool {
         arrow(canvas, [at[0] - dx, at[1] - dy], [at[0] + dx, at[1] + dy], unit);
         let below = [at[0], at[1] + dy.abs() + 16.0 * unit];
         let speed = format!("{:.0}", speeds[i]);
-        text::write_haloed(canvas, &speed, below, 12.5 * unit, Align::Middle, ARROW, CASING.alpha(110));
+        text::write_haloed(canvas, &speed, below, 12.5 * unit, Align::Middle, ARROW, CASING);
         drawn = true;
     }
     drawn

@@ -4,7 +4,8 @@
 //! directions after Mark 1992). The normal is that of a blend of the ground and of two smoother copies of it
 //! (resolution bumping, Patterson), so that great ranges read as one body and crests still as crests. A term for how
 //! high a place stands over its surroundings darkens valleys and lightens ridges, as a soft sky does. Slopes are
-//! exaggerated until the land's typical slope is a good one to light, then bent so that the steepest keep detail.
+//! exaggerated until the land's typical slope is a good one to light, then bent so that plains show their form and the
+//! steepest slopes keep detail.
 
 use super::{blur::blur, frame::Frame};
 use crate::grid::{Field, sum_rows};
@@ -13,9 +14,13 @@ use crate::grid::{Field, sum_rows};
 const LIGHTS: [(f64, f64, f64); 5] =
     [(315.0, 42.0, 0.60), (275.0, 36.0, 0.15), (355.0, 36.0, 0.15), (225.0, 32.0, 0.05), (45.0, 32.0, 0.05)];
 /// Root mean square of the exaggerated slope that is aimed at.
-const TYPICAL: f64 = 0.62;
+const TYPICAL: f64 = 0.80;
 /// Slopes beyond this are bent towards it.
-const STEEP: f64 = 1.7;
+const STEEP: f32 = 1.5;
+/// Gentle slopes count for more, as in a drawn map, where a plain has its own modelling: slope to this power ...
+const GENTLE: f32 = 0.70;
+/// ... down to this slope.
+const LEVEL: f32 = 0.04;
 /// Flat worlds stay flat: no more than this.
 const MOST: f64 = 90.0;
 /// Blur of the three copies, in thousandths of the picture's side, and their share in the slope.
@@ -48,8 +53,7 @@ pub fn shade(
             g = [g[0] + gx * share as f32, g[1] + gy * share as f32];
         }
         let [gx, gy] = g.map(|v| v * factor);
-        let steep = (gx * gx + gy * gy) / (STEEP * STEEP) as f32;
-        let bend = 1.0 / (1.0 + steep).sqrt();
+        let bend = bend(gx * gx + gy * gy);
         let (gx, gy) = (gx * bend, gy * bend);
         let norm = 1.0 / (1.0 + gx * gx + gy * gy).sqrt();
         let lit: f32 = lights.iter().map(|l| ((l[2] - gx * l[0] - gy * l[1]) * norm).max(0.0)).sum();
@@ -60,7 +64,14 @@ pub fn shade(
     })
 }
 
-/// Central differences, one-sided at the rim.
+/// What a slope is multiplied with before it is lit, by its square.
+fn bend(squared: f32) -> f32 {
+    let raised = libm::powf(squared + LEVEL * LEVEL, 0.5 * (GENTLE - 1.0));
+    let steep = squared * raised * raised / (STEEP * STEEP);
+    raised / (1.0 + steep).sqrt()
+}
+
+/// Central differences, half at the rim.
 fn slope(z: &Field<f32>, x: usize, y: usize) -> [f32; 2] {
     let g = &z.grid;
     let per = (0.5 / g.cell_m) as f32;
@@ -69,14 +80,12 @@ fn slope(z: &Field<f32>, x: usize, y: usize) -> [f32; 2] {
 
 /// The factor that gives the pixels that count a typical slope.
 fn typical_exaggeration(z: &Field<f32>, counts: impl Fn(f32) -> bool + Sync) -> f64 {
-    let over = |f: &(dyn Fn(usize, usize) -> f64 + Sync)| {
-        sum_rows(z.grid.height, |y| (0..z.grid.width).filter(|&x| counts(z.at(x, y))).map(|x| f(x, y)).sum())
-    };
-    let count = over(&|_, _| 1.0);
-    let squares = over(&|x, y| {
-        let [gx, gy] = slope(z, x, y).map(f64::from);
-        gx * gx + gy * gy
-    });
+    let counts = &counts;
+    let rows = z.grid.height;
+    let land = |y: usize| (0..z.grid.width).filter(move |&x| counts(z.at(x, y)));
+    let count = sum_rows(rows, |y| land(y).count() as f64);
+    let squares =
+        sum_rows(rows, |y| land(y).map(|x| slope(z, x, y).map(f64::from)).map(|[gx, gy]| gx * gx + gy * gy).sum());
     let typical = if count > 0.0 { (squares / count).sqrt() } else { 0.0 };
     (TYPICAL / typical.max(TYPICAL / MOST)).max(0.5)
 }

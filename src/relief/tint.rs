@@ -19,25 +19,25 @@ const LAND: [(f64, u32); 11] = [
     (120.0, 0x7aa668),
     (350.0, 0xa3ba72),
     (700.0, 0xcfc980),
-    (1200.0, 0xd9b973),
-    (1900.0, 0xc29357),
-    (2700.0, 0xa06f45),
-    (3500.0, 0x8a6450),
-    (4200.0, 0x9c8f89),
-    (5000.0, 0xd3d1d3),
+    (1200.0, 0xdabf79),
+    (1900.0, 0xc69c5e),
+    (2700.0, 0xab7d4d),
+    (3500.0, 0x967660),
+    (4200.0, 0xa59d97),
+    (5000.0, 0xd6d5d6),
     (5800.0, 0xffffff),
 ];
 /// Metres over the sea, from the deepest.
 const SEA: [(f64, u32); 9] = [
-    (-10000.0, 0x0b1838),
-    (-7500.0, 0x142a58),
-    (-6000.0, 0x1d4078),
-    (-4500.0, 0x2a5c98),
-    (-3000.0, 0x3f7db3),
-    (-1500.0, 0x66a3c9),
-    (-250.0, 0x9bcbdd),
-    (-60.0, 0xb4dde3),
-    (0.0, 0xc6e8e6),
+    (-10000.0, 0x0c1c40),
+    (-7500.0, 0x173366),
+    (-6000.0, 0x234d88),
+    (-4500.0, 0x326ba6),
+    (-3000.0, 0x4c8cbc),
+    (-1500.0, 0x72adcf),
+    (-250.0, 0xa3d0df),
+    (-60.0, 0xb9e0e4),
+    (0.0, 0xc8e9e6),
 ];
 /// Relief from which colours stand for absolute metres.
 const ABSOLUTE_M: f64 = 1500.0;
@@ -100,8 +100,8 @@ pub fn relief(frame: &Frame, heights: &Field<f32>, scene: &Scene, options: &Opti
     crate::grid::map_cells(&mut pixels, frame.grid.width, |x, y| {
         let (h, tone, land) = (heights.at(x, y), tone.at(x, y), coast.land.at(x, y));
         let wet = || {
-            let halo = 0.42 * libm::expf(-coast.offshore_px.at(x, y) / (5.0 * unit));
-            lit(mix(scene.sea(h.min(sea)), glow, halo), tone * 0.42)
+            let halo = 0.34 * libm::expf(-coast.offshore_px.at(x, y) / (4.5 * unit));
+            mix(lit_floor(scene.sea(h.min(sea)), tone * 0.5), glow, halo)
         };
         let dry = || lit(scene.land(h.max(sea)), tone);
         let ground = match land {
@@ -117,14 +117,24 @@ pub fn relief(frame: &Frame, heights: &Field<f32>, scene: &Scene, options: &Opti
 
 /// A colour under light: shadows cool, light warm, as on painted maps.
 pub fn lit(colour: Rgb, tone: f32) -> Rgb {
-    const SHADOW: Rgb = [0.055, 0.07, 0.15];
-    const LIGHT: Rgb = [1.0, 0.96, 0.84];
+    const SHADOW: Rgb = [0.10, 0.12, 0.22];
+    const WARM: Rgb = [1.0, 0.97, 0.88];
     if tone < 0.0 {
-        let t = -tone;
-        [0, 1, 2].map(|c| colour[c] * (1.0 - t + t * (SHADOW[c] * 1.2)))
+        [0, 1, 2].map(|c| colour[c] * (1.0 + tone * (1.0 - SHADOW[c])))
     } else {
-        [0, 1, 2].map(|c| colour[c] + (LIGHT[c] - colour[c]).max(0.0) * tone * 0.62)
+        // More light on the same colour first, so that it keeps its strength; a little glare on top.
+        [0, 1, 2].map(|c| {
+            let bright = colour[c] * (1.0 + 0.75 * tone * WARM[c]);
+            bright + (WARM[c] - bright).max(0.0) * tone * 0.20
+        })
     }
+}
+
+/// A sea floor under light: all of it through water.
+fn lit_floor(colour: Rgb, tone: f32) -> Rgb {
+    const DEEP: Rgb = [0.25, 0.30, 0.42];
+    let gain = |c: usize| if tone < 0.0 { 1.0 + tone * (1.0 - DEEP[c]) } else { 1.0 + 0.8 * tone };
+    [0, 1, 2].map(|c| (colour[c] * gain(c)).min(1.0))
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use upthrust::{
 };
 
 /// Kept small: a picture in the repository.
-const MOST_BYTES: u64 = 40_000;
+const MOST_BYTES: u64 = 30_000;
 
 fn check(name: &str, picture: &RgbImage) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name).with_extension("png");
@@ -54,8 +54,8 @@ fn a_larger_world_is_averaged_to_nearly_the_same_picture() {
 
 #[test]
 fn furnished_map_with_plates() {
-    let options = Options { overlay: true, min_px: 192, title: Some("Sample".into()), ..Options::default() };
-    check("furnished", &draw(&sample::world(96, 64), View::Relief, &options));
+    let options = Options { overlay: true, min_px: 128, title: Some("Sample".into()), ..Options::default() };
+    check("furnished", &draw(&sample::world(64, 40), View::Relief, &options));
 }
 
 #[test]

@@ -49,7 +49,7 @@ fn ridged(p: [f64; 2]) -> f64 {
         let ridge = (1.0 - noise(p, 400 + octave).abs()).powi(2) * weight;
         sum += amplitude * ridge;
         weight = (ridge * 1.6).min(1.0);
-        amplitude *= 0.5;
+        amplitude *= 0.56;
         p = [(p[0] * 0.8 - p[1] * 0.6) * 2.0, (p[0] * 0.6 + p[1] * 0.8) * 2.0];
     }
     sum
@@ -85,7 +85,7 @@ fn at([x, y]: [f64; 2]) -> Point {
     let step = ((mainland - 0.42) / 0.16).clamp(0.0, 1.0);
     let base = -4300.0 + 4250.0 * step * step * (3.0 - 2.0 * step) + (mainland - 0.5).max(0.0) * 900.0;
     let belt = (-(near / 0.055).powi(2)).exp();
-    let crest = ridged([x * 9.0, y * 9.0]);
+    let crest = ridged([x * 15.0, y * 15.0]);
     let lift = match border {
         1 => 5200.0 * belt * (0.35 + crest),
         2 if own => 4300.0 * (-((near - 0.035) / 0.035).powi(2)).exp() * (0.3 + crest),
@@ -93,7 +93,8 @@ fn at([x, y]: [f64; 2]) -> Point {
         3 => 1500.0 * (-(near / 0.08)).exp(),
         _ => 0.0,
     };
-    let rough = fbm([x * 14.0 + 5.0, y * 14.0], 9, 0.5) * if step > 0.5 { 130.0 + 0.1 * lift.max(0.0) } else { 160.0 };
+    let rough =
+        fbm([x * 14.0 + 5.0, y * 14.0], 8, 0.55) * if step > 0.5 { 150.0 + 0.22 * lift.max(0.0) } else { 160.0 };
     Point { height_m: base + lift + rough, plate, border: if near < 0.03 { border } else { 0 }, near }
 }
 
