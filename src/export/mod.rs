@@ -70,7 +70,7 @@ pub fn write_whole(
 pub fn write_picture(picture: &image::RgbImage, path: &Path) -> Result<(), ExportError> {
     use image::{ExtendedColorType, ImageEncoder, codecs::png};
     write_whole(path, |file| {
-        png::PngEncoder::new_with_quality(file, png::CompressionType::Default, png::FilterType::Adaptive)
+        png::PngEncoder::new_with_quality(file, png::CompressionType::Fast, png::FilterType::Adaptive)
             .write_image(picture.as_raw(), picture.width(), picture.height(), ExtendedColorType::Rgb8)
             .map_err(|e| ExportError::Encode { path: path.to_owned(), cause: e.to_string() })
     })

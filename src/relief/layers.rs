@@ -1,5 +1,7 @@
 //! One layer by its palette, over a faint shading that shows where one is.
 
+use rayon::prelude::*;
+
 use super::{
     Options,
     coast::Coast,
@@ -69,8 +71,13 @@ fn continuous(frame: &Frame, field: &Field<f32>, spec: &Spec) -> (Vec<Rgb>, Lege
 }
 
 /// The catalogue's range, so that pictures compare; another one where the values leave it or fill less than a fifth.
+/// A few odd cells (one in two hundred on either side) don't count.
 fn span(field: &Field<f32>, spec: &Spec) -> [f64; 2] {
-    let Some((low, high)) = field.range().map(|(a, b)| (a as f64, b as f64)) else { return spec.range };
+    let mut sorted = field.data.clone();
+    sorted.par_sort_unstable_by(f32::total_cmp);
+    let last = sorted.len().saturating_sub(1);
+    let odd = last / 200;
+    let (low, high) = (sorted[odd] as f64, sorted[last - odd] as f64);
     let [from, to] = spec.range;
     let diverging = spec.palette == Palette::Diverging;
     let reach = if diverging { low.abs().max(high.abs()) / to } else { (high - from) / (to - from) };
@@ -173,6 +180,9 @@ mod tests {
         assert_eq!(of(Layer::Uplift, -0.03, 0.11), [-0.2, 0.2]);
         assert_eq!(of(Layer::Uplift, -0.3, 1.1), [-2.0, 2.0]);
         assert_eq!(of(Layer::Hardness, 0.0, 0.0), [0.0, 1.0]);
+        let mut cliff = Field::filled(Grid::new(40, 20, 40.0, Edges::Open), 20.0);
+        cliff.data[7] = 89.0;
+        assert_eq!(span(&cliff, &Layer::Slope.spec()), [0.0, 45.0], "one cell does not change the colours of all");
         assert_eq!((round_up(0.3), round_up(5.0), round_up(7.0)), (0.5, 5.0, 10.0));
     }
 }

@@ -123,6 +123,15 @@ pub fn map(world: &World, view: &View, options: &Options) -> Result<RgbImage, Re
     Ok(canvas.into_image())
 }
 
+/// The vertical exaggeration that a map of this world would choose; a film puts that of one frame into all.
+pub fn exaggeration(world: &World, options: &Options) -> f64 {
+    let frame = Frame::new(world.grid, options.max_px, options.min_px);
+    let sea = world.sea_level_m as f32;
+    let heights = frame.continuous(&world.height());
+    let has_land = heights.data.iter().any(|&h| h > sea);
+    shade::exaggeration(&heights, |h| h > sea || !has_land)
+}
+
 fn finite(layer: Layer, field: crate::grid::Field<f32>) -> Result<crate::grid::Field<f32>, ReliefError> {
     match field.first_non_finite() {
         Some((x, y)) => Err(ReliefError::NotFinite { layer: layer.name(), x, y }),

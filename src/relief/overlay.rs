@@ -227,7 +227,8 @@ fn motions(canvas: &mut Canvas, frame: &Frame, world: &World) -> bool {
     for i in 0..table.rows() {
         let at = [xs[i], ys[i]].map(|km| (km * 1000.0 / frame.grid.cell_m) as f32);
         let on_map = at[0] >= 0.0 && at[1] >= 0.0 && at[0] <= wide && at[1] <= tall;
-        if !on_map || !(speeds[i] > 0.0 && fastest > 0.0) || !headings[i].is_finite() {
+        let moves = speeds[i] > 0.0 && fastest.is_finite() && headings[i].is_finite();
+        if !(on_map && moves) {
             continue;
         }
         let length = (18.0 + 46.0 * (speeds[i] / fastest) as f32) * unit;

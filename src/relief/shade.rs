@@ -24,7 +24,7 @@ const LEVEL: f32 = 0.04;
 /// Flat worlds stay flat: no more than this.
 const MOST: f64 = 90.0;
 /// Blur of the three copies, in thousandths of the picture's side, and their share in the slope.
-const SCALES: [(f64, f64); 3] = [(0.0, 0.50), (2.5, 0.55), (10.0, 0.75)];
+const SCALES: [(f64, f64); 3] = [(0.0, 0.70), (2.5, 0.50), (10.0, 0.60)];
 /// Least blur of each, pixels: single cells are not terrain.
 const LEAST_PX: [f64; 3] = [0.55, 1.4, 3.0];
 
@@ -35,9 +35,7 @@ pub fn shade(
     counts: impl Fn(f32) -> bool + Sync,
     exaggeration: Option<f64>,
 ) -> Field<f32> {
-    let side = z.grid.width.max(z.grid.height) as f64;
-    let sigma = |i: usize| (SCALES[i].0 * side / 1000.0).max(LEAST_PX[i]);
-    let copies = [0, 1, 2].map(|i| blur(z, sigma(i)));
+    let copies = [0, 1, 2].map(|i| blur(z, sigma_px(z, i)));
     let factor = exaggeration.unwrap_or_else(|| typical_exaggeration(&copies[0], counts)) as f32;
     let lights = LIGHTS.map(|(azimuth, altitude, weight)| {
         let (a, h) = (f64::to_radians(azimuth), f64::to_radians(altitude));
@@ -45,7 +43,7 @@ pub fn shade(
     });
     let flat: f32 = lights.iter().map(|l| l[2]).sum();
     // Height over the surroundings, in units of a slope of one across the blur.
-    let per_m = factor / (sigma(2) * frame.grid.cell_m) as f32;
+    let per_m = factor / (sigma_px(z, 2) * frame.grid.cell_m) as f32;
     Field::from_fn(z.grid, |x, y| {
         let mut g = [0.0f32; 2];
         for (copy, (_, share)) in copies.iter().zip(SCALES) {
@@ -62,6 +60,17 @@ pub fn shade(
         let sky = 0.16 * over / (1.0 + over * over).sqrt();
         (tone + sky).clamp(-1.0, 1.0)
     })
+}
+
+/// The exaggeration that `shade` would choose.
+pub fn exaggeration(z: &Field<f32>, counts: impl Fn(f32) -> bool + Sync) -> f64 {
+    typical_exaggeration(&blur(z, sigma_px(z, 0)), counts)
+}
+
+/// Blur of one of the copies.
+fn sigma_px(z: &Field<f32>, copy: usize) -> f64 {
+    let side = z.grid.width.max(z.grid.height) as f64;
+    (SCALES[copy].0 * side / 1000.0).max(LEAST_PX[copy])
 }
 
 /// What a slope is multiplied with before it is lit, by its square.

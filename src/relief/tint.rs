@@ -15,8 +15,8 @@ use crate::grid::Field;
 
 /// Metres over the sea.
 const LAND: [(f64, u32); 11] = [
-    (0.0, 0x5f9463),
-    (120.0, 0x7aa668),
+    (0.0, 0x66976a),
+    (120.0, 0x80a870),
     (350.0, 0xa3ba72),
     (700.0, 0xcfc980),
     (1200.0, 0xdabf79),
@@ -29,12 +29,12 @@ const LAND: [(f64, u32); 11] = [
 ];
 /// Metres over the sea, from the deepest.
 const SEA: [(f64, u32); 9] = [
-    (-10000.0, 0x0c1c40),
-    (-7500.0, 0x173366),
-    (-6000.0, 0x234d88),
-    (-4500.0, 0x326ba6),
-    (-3000.0, 0x4c8cbc),
-    (-1500.0, 0x72adcf),
+    (-10000.0, 0x10203f),
+    (-7500.0, 0x1c3763),
+    (-6000.0, 0x2a5184),
+    (-4500.0, 0x3a6fa0),
+    (-3000.0, 0x5490b8),
+    (-1500.0, 0x79b0cc),
     (-250.0, 0xa3d0df),
     (-60.0, 0xb9e0e4),
     (0.0, 0xc8e9e6),
@@ -96,11 +96,11 @@ pub fn relief(frame: &Frame, heights: &Field<f32>, scene: &Scene, options: &Opti
     let coast = Coast::new(heights, sea);
     let unit = frame.unit();
     let mut pixels = vec![[0.0; 3]; frame.grid.cells()];
-    let (ink, glow) = (hex(0x24455a), hex(0xdff3ee));
+    let (ink, glow) = (hex(0x24455a), hex(0xbfe2e8));
     crate::grid::map_cells(&mut pixels, frame.grid.width, |x, y| {
         let (h, tone, land) = (heights.at(x, y), tone.at(x, y), coast.land.at(x, y));
         let wet = || {
-            let halo = 0.34 * libm::expf(-coast.offshore_px.at(x, y) / (4.5 * unit));
+            let halo = 0.40 * libm::expf(-coast.offshore_px.at(x, y) / (4.5 * unit));
             mix(lit_floor(scene.sea(h.min(sea)), tone * 0.5), glow, halo)
         };
         let dry = || lit(scene.land(h.max(sea)), tone);

@@ -37,7 +37,7 @@ pub fn read(path: &Path) -> Result<(World, Provenance), StoreError> {
     let cell_m: f64 = reader.get(&attributes, "cell_m")?;
     let edges: Edges = reader.get(&attributes, "edges")?;
     let sane = width > 0 && height > 0 && width.checked_mul(height).is_some_and(|n| n <= MOST_CELLS);
-    if !sane || !(cell_m.is_finite() && cell_m > 0.0) {
+    if !(sane && cell_m.is_finite() && cell_m > 0.0) {
         return Err(reader.damaged(format!("size {width} x {height} with cells of {cell_m} m")));
     }
     let grid = Grid { width, height, cell_m, edges };

@@ -187,16 +187,13 @@ impl Writer {
     }
 
     /// A layer: shards in parallel, those over the rim padded with zeros.
-    fn plane<T: Element + Copy + Default + Send + Sync>(
+    fn plane<T: Element + Copy + Default + Send + Sync + Into<ArrayBuilderFillValue>>(
         &mut self,
         head: &Head,
         kind: impl Into<ArrayBuilderDataType>,
         field: &Field<f32>,
         convert: impl Fn(f32) -> T + Sync,
-    ) -> Result<(), StoreError>
-    where
-        T: Into<ArrayBuilderFillValue>,
-    {
+    ) -> Result<(), StoreError> {
         let (chunk, shard): (Vec<u64>, Vec<u64>) = head.shape.iter().map(|&size| chunking(size)).unzip();
         let mut builder = ArrayBuilder::new(head.shape.to_vec(), shard.clone(), kind, T::default());
         builder.subchunk_shape(chunk);
