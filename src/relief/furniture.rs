@@ -204,7 +204,8 @@ fn scale_bar(canvas: &mut Canvas, [x, y]: [f32; 2], inner: f32, map_w: f32, fram
     }
     canvas.frame([x, top], [px, tall], u.max(1.0), INK);
     let size = 12.0 * u;
-    for part in [0, 2, 4] {
+    let roomy = px > 3.0 * text::width(&number(length_m / per), size);
+    for part in [0, 2, 4].into_iter().filter(|&part| roomy || part != 2) {
         let value = length_m * part as f64 / parts as f64 / per;
         let at = x + px * part as f32 / parts as f32;
         let (align, at) = if part == 0 { (Align::Left, x - u) } else { (Align::Middle, at) };

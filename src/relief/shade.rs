@@ -17,9 +17,8 @@ const LIGHTS: [(f64, f64, f64); 5] =
 const TYPICAL: f64 = 0.80;
 /// Slopes beyond this are bent towards it.
 const STEEP: f32 = 1.5;
-/// Gentle slopes count for more, as in a drawn map, where a plain has its own modelling: slope to this power ...
-const GENTLE: f32 = 0.70;
-/// ... down to this slope.
+/// Gentle slopes count for more, as in a drawn map, where a plain has its own modelling: slope to the power 3/4, down
+/// to this slope.
 const LEVEL: f32 = 0.04;
 /// Flat worlds stay flat: no more than this.
 const MOST: f64 = 90.0;
@@ -75,7 +74,7 @@ fn sigma_px(z: &Field<f32>, copy: usize) -> f64 {
 
 /// What a slope is multiplied with before it is lit, by its square.
 fn bend(squared: f32) -> f32 {
-    let raised = libm::powf(squared + LEVEL * LEVEL, 0.5 * (GENTLE - 1.0));
+    let raised = 1.0 / (squared + LEVEL * LEVEL).sqrt().sqrt().sqrt();
     let steep = squared * raised * raised / (STEEP * STEEP);
     raised / (1.0 + steep).sqrt()
 }
