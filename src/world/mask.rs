@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::grid::{Edges, Field, Grid, linear};
 
-use super::{Layer, World};
+use super::{Layer, PictureError, World, open_picture};
 
 /// A stage's mask: values 0 (nothing) to 1 (fully) over the map.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,8 +29,8 @@ pub enum MaskError {
     #[error("mask needs the layer '{0}', which no earlier stage makes")]
     Absent(&'static str),
     /// The image could not be read.
-    #[error("mask image {0}: {1}")]
-    Image(String, String),
+    #[error("mask image {0}")]
+    Image(#[from] PictureError),
 }
 
 impl Mask {
@@ -50,7 +50,11 @@ impl Mask {
             return Ok(Mask::Layer(layer));
         }
         let is_image = [".png", ".jpg", ".jpeg"].iter().any(|end| text.to_lowercase().ends_with(end));
-        if is_image { Ok(Mask::Image(folder.join(text))) } else { Err(unreadable()) }
+        if is_image && text.starts_with("sample:") {
+            Ok(Mask::Image(text.into()))
+        } else if is_image {
+            Ok(Mask::Image(folder.join(text)))
+        } else { Err(unreadable()) }
     }
 
     /// The mask over a world as it stands.
@@ -69,8 +73,7 @@ impl Mask {
 }
 
 fn read_image(path: &Path, grid: Grid) -> Result<Field<f32>, MaskError> {
-    let image =
-        image::open(path).map_err(|e| MaskError::Image(path.display().to_string(), e.to_string()))?.into_luma16();
+    let image = open_picture(path)?.into_luma16();
     let (w, h) = (image.width() as usize, image.height() as usize);
     let data = image.into_raw().into_iter().map(|v| v as f32 / 65535.0).collect();
     let picture = Field { grid: Grid { width: w, height: h, cell_m: 1.0, edges: Edges::Closed }, data };

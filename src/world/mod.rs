@@ -6,11 +6,13 @@ mod catalogue;
 mod ledger;
 mod mask;
 pub mod store;
+mod picture;
 mod table;
 
 pub use catalogue::{Kind, Layer, Palette, Spec};
 pub use ledger::{Account, Ledger, Matter};
 pub use mask::{Mask, MaskError};
+pub use picture::{PictureError, open_picture};
 pub use table::{Column, Table, Values};
 
 use std::collections::BTreeMap;

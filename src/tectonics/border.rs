@@ -1,0 +1,82 @@
+//! Borders as the tectonic raster shows them: which cells lie on one, what the plates do there, how far it is to each kind.
+
+use glam::DVec2;
+
+use super::{
+    contact::{Motion, classify},
+    exchange::NONE,
+    simulation::Simulation,
+    stretch::{Meeting, meeting},
+};
+
+/// Half width of the window from which a border cell's normal is taken, cells.
+const WINDOW: isize = 6;
+
+/// A cell on a border.
+#[derive(Clone, Copy, Debug)]
+pub struct BorderCell {
+    /// Row-major index.
+    pub cell: usize,
+    /// The plate on top (or that owns the cell, where none is).
+    pub over: usize,
+    /// The other plate.
+    pub under: usize,
+    /// What happens.
+    pub meeting: Meeting,
+    /// Speed across the border: closing positive, m/yr.
+    pub closing_m_per_yr: f64,
+}
+
+/// Every cell whose eastern or southern neighbour belongs to another plate, in cell order.
+pub fn border_cells(run: &Simulation) -> Vec<BorderCell> {
+    let n = run.domain.cells;
+    let top = &run.owners.top;
+    let mut cells = Vec::new();
+    for y in 0..n - 1 {
+        for x in 0..n - 1 {
+            let a = top[y * n + x];
+            let b = [top[y * n + x + 1], top[(y + 1) * n + x]].into_iter().find(|&b| b != a && b != NONE);
+            if let Some(b) = b.filter(|_| a != NONE)
+                && let Some(cell) = border_cell(run, x, y, a as usize, b as usize)
+            {
+                cells.push(cell);
+            }
+        }
+    }
+    cells
+}
+
+fn border_cell(run: &Simulation, x: usize, y: usize, a: usize, b: usize) -> Option<BorderCell> {
+    let n = run.domain.cells as isize;
+    let mut across = DVec2::ZERO;
+    for dy in -WINDOW..=WINDOW {
+        for dx in -WINDOW..=WINDOW {
+            let (i, j) = (x as isize + dx, y as isize + dy);
+            if i < 0 || j < 0 || i >= n || j >= n || dx * dx + dy * dy > WINDOW * WINDOW {
+                continue;
+            }
+            let owner = run.owners.top[(j * n + i) as usize] as usize;
+            let offset = DVec2::new(dx as f64, dy as f64);
+            if owner == a {
+                across -= offset;
+            } else if owner == b {
+                across += offset;
+            }
+        }
+    }
+    let normal = across.try_normalize()?;
+    let at_m = run.domain.cell_center_m(x, y);
+    let relative = run.engine.velocity_at(a, at_m) - run.engine.velocity_at(b, at_m);
+    let closing_m_per_yr = relative.dot(normal);
+    let cell = y * run.domain.cells + x;
+    // Rock a few cells to either side, clear of the ragged rim.
+    let aside = normal * (3.0 * run.domain.cell_m());
+    let rock = |plate: usize, at: DVec2| run.plates[plate].owned_under(at).map(|i| run.plates[plate].rock[i]);
+    let (over, under, meeting) = match classify(relative, normal) {
+        Motion::Quiet => return None,
+        Motion::Divergent => (a, b, Meeting::Spreading),
+        Motion::Transform => (a, b, Meeting::Transform),
+        Motion::Convergent => meeting((a, &rock(a, at_m - aside)?), (b, &rock(b, at_m + aside)?), &run.polarity),
+    };
+    Some(BorderCell { cell, over, under, meeting, closing_m_per_yr })
+}

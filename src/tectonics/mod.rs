@@ -1,0 +1,33 @@
+//! Rigid plates drift, collide, part and slide; land follows.
+//!
+//! A square wider than the map is cut into convex plates (`partition`). rapier2d moves them (`engine`) over a mantle that
+//! drags them (`mantle`); what their contacts say (`contact`) becomes stretches of border (`stretch`). Every plate carries
+//! its ground on a raster of its own (`plate`), so that nothing smears; where rasters overlap or part, crust is exchanged
+//! (`exchange`), ranges are raised (`raise`) and volcanoes grow (`arc`). `simulation` runs it; `surface` turns crust into
+//! heights, which the map reads through one fold-free warp (`warp`), so that straight borders show nowhere.
+//!
+//! This room alone touches rapier2d. It knows the map's grid only when it publishes: plates run on cells of their own,
+//! so that a larger map is sharper, not different.
+
+mod arc;
+mod border;
+mod contact;
+mod domain;
+mod engine;
+mod exchange;
+mod initial;
+mod mantle;
+mod paint;
+mod params;
+mod partition;
+mod plate;
+mod raise;
+mod simulation;
+mod stage;
+mod stretch;
+mod surface;
+mod tables;
+mod thesis;
+mod warp;
+
+pub use params::{PlateCrust, PlateEntry, PlateStyle, PlatesParams};

@@ -1,0 +1,158 @@
+//! One plate's ground in its own coordinates: a raster that moves rigidly, so that nothing smears as the plate drifts.
+
+use glam::DVec2;
+
+use super::{domain::Domain, engine::Pose};
+
+/// The raster of a plate's body frame: cells `(i, j)` have their centres at `corner_m + (i + ½, j + ½)·cell_m`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Body coordinates of the raster's first corner, m.
+    pub corner_m: DVec2,
+    /// Cells along the body's x.
+    pub width: usize,
+    /// Cells along the body's y.
+    pub height: usize,
+    /// Side of a cell, m.
+    pub cell_m: f64,
+}
+
+impl Frame {
+    /// Body coordinates of a cell's centre, m.
+    pub fn center_m(&self, index: usize) -> DVec2 {
+        let (i, j) = (index % self.width, index / self.width);
+        self.corner_m + DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * self.cell_m
+    }
+
+    /// Body coordinates to cell units.
+    pub fn to_cells(self, body: DVec2) -> DVec2 {
+        (body - self.corner_m) / self.cell_m
+    }
+
+    /// The cell that holds a point in cell units.
+    pub fn cell_at(&self, at: DVec2) -> Option<usize> {
+        let inside = at.x >= 0.0 && at.y >= 0.0 && at.x < self.width as f64 && at.y < self.height as f64;
+        inside.then(|| at.y as usize * self.width + at.x as usize)
+    }
+}
+
+/// The crust of one cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rock {
+    /// Thickness of the crust the cell was born with, stretched since, m.
+    pub crust_m: f32,
+    /// Thickness that collision and accretion added, m.
+    pub added_m: f32,
+    /// Height of volcanoes on top, m.
+    pub edifice_m: f32,
+    /// Continental share, 0 to 1.
+    pub kind: f32,
+    /// When the crust was made, My after the run's start (negative: before).
+    pub born_myr: f32,
+    /// Speed of thickening, smoothed over the last million years, m/My.
+    pub rate_m_per_myr: f32,
+}
+
+impl Rock {
+    /// Crust in the column, m.
+    pub fn thickness_m(&self) -> f64 {
+        self.crust_m as f64 + self.added_m as f64 + self.edifice_m as f64
+    }
+}
+
+/// A plate: where it is, which cells are its own, and what they are made of.
+#[derive(Clone, Debug)]
+pub struct Plate {
+    /// Body frame to map.
+    pub pose: Pose,
+    /// Its raster.
+    pub frame: Frame,
+    /// Which cells belong to the plate.
+    pub owned: Vec<bool>,
+    /// Their rock; default where not owned.
+    pub rock: Vec<Rock>,
+}
+
+impl Plate {
+    /// A plate that owns the tectonic cells for which `own(x, y)` holds, with room to grow by `reach_m` on all sides.
+    pub fn new(domain: &Domain, pose: Pose, reach_m: f64, own: impl Fn(usize, usize) -> bool, rock: impl Fn(usize, usize) -> Rock) -> Self {
+        let n = domain.cells;
+        let (mut low, mut high) = ([n, n], [0, 0]);
+        for y in 0..n {
+            for x in 0..n {
+                if own(x, y) {
+                    low = [low[0].min(x), low[1].min(y)];
+                    high = [high[0].max(x + 1), high[1].max(y + 1)];
+                }
+            }
+        }
+        let room = (reach_m / domain.cell_m()).ceil() as usize;
+        let low = low.map(|v| v.min(n - 1).saturating_sub(room));
+        let high = high.map(|v| (v.max(1) + room).min(n));
+        let (width, height) = (high[0].max(low[0] + 1) - low[0], high[1].max(low[1] + 1) - low[1]);
+        let corner = domain.corner_m + DVec2::new(low[0] as f64, low[1] as f64) * domain.cell_m() - pose.at_m;
+        let frame = Frame { corner_m: corner, width, height, cell_m: domain.cell_m() };
+        let mut plate = Self { pose, frame, owned: vec![false; width * height], rock: vec![Rock::default(); width * height] };
+        for j in 0..height {
+            for i in 0..width {
+                if own(low[0] + i, low[1] + j) {
+                    plate.owned[j * width + i] = true;
+                    plate.rock[j * width + i] = rock(low[0] + i, low[1] + j);
+                }
+            }
+        }
+        plate
+    }
+
+    /// The cell under a point of the map, owned or not.
+    pub fn cell_under(&self, at_m: DVec2) -> Option<usize> {
+        self.frame.cell_at(self.frame.to_cells(self.pose.to_body(at_m)))
+    }
+
+    /// The owned cell under a point of the map.
+    pub fn owned_under(&self, at_m: DVec2) -> Option<usize> {
+        self.cell_under(at_m).filter(|&i| self.owned[i])
+    }
+
+    /// Map position of a cell's centre, m.
+    pub fn center_m(&self, index: usize) -> DVec2 {
+        self.pose.to_map(self.frame.center_m(index))
+    }
+
+    /// Rock between cell centres, from the owned ones of the four around; `None` where none is owned.
+    pub fn sample(&self, at_m: DVec2) -> Option<Rock> {
+        let at = self.frame.to_cells(self.pose.to_body(at_m)) - 0.5;
+        let (base, f) = (at.floor(), at - at.floor());
+        let mut sum = [0.0f64; 6];
+        let mut weight = 0.0;
+        for (dx, dy, w) in
+            [(0.0, 0.0, (1.0 - f.x) * (1.0 - f.y)), (1.0, 0.0, f.x * (1.0 - f.y)), (0.0, 1.0, (1.0 - f.x) * f.y), (1.0, 1.0, f.x * f.y)]
+        {
+            let Some(i) = self.frame.cell_at(base + DVec2::new(dx, dy)).filter(|&i| self.owned[i]) else { continue };
+            let r = &self.rock[i];
+            for (s, v) in sum.iter_mut().zip([r.crust_m, r.added_m, r.edifice_m, r.kind, r.born_myr, r.rate_m_per_myr]) {
+                *s += w * v as f64;
+            }
+            weight += w;
+        }
+        (weight > 1e-9).then(|| {
+            let [crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr] = sum.map(|s| (s / weight) as f32);
+            Rock { crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr }
+        })
+    }
+
+    /// Volume of its crust, m³.
+    pub fn crust_m3(&self) -> f64 {
+        let sum: f64 = self.owned.iter().zip(&self.rock).filter(|(own, _)| **own).map(|(_, r)| r.thickness_m()).sum();
+        sum * self.frame.cell_m * self.frame.cell_m
+    }
+
+    /// Corners of a box around its owned cells, map metres.
+    pub fn bounds_m(&self) -> [DVec2; 2] {
+        let (w, h) = (self.frame.width as f64, self.frame.height as f64);
+        let corners = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(0.0, h), DVec2::new(w, h)];
+        let corners = corners.map(|c| self.pose.to_map(self.frame.corner_m + c * self.frame.cell_m));
+        let fold = |f: fn(DVec2, DVec2) -> DVec2| corners[1..].iter().fold(corners[0], |a, &b| f(a, b));
+        [fold(DVec2::min), fold(DVec2::max)]
+    }
+}

@@ -1,0 +1,380 @@
+//! The run of the plates: bodies move, ownership follows, crust is made, lost, thickened and thinned.
+//!
+//! One geologic step is a few engine steps, so many that no plate moves more than about one and a half tectonic cells.
+//! Crust is booked: what spreading, accretion and volcanoes make comes in, what sinks leaves, what collides is moved.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::{
+    crust,
+    noise::Key,
+    rmp::Brush,
+};
+
+use super::{
+    arc::{self, Arc},
+    contact::Contact,
+    domain::Domain,
+    engine::{Engine, Grip},
+    exchange::{self, Lost, Owners, Polarity},
+    plate::{Plate, Rock},
+    raise::{self, Belt, Line, Share, Work},
+    stretch::{self, Meeting, Stretch},
+};
+
+/// Crust of gap cells beside a continent, as a share of the crust beside them.
+const STRETCHED: f32 = 0.45;
+/// Continental crust thinner than this breaks: what opens beside it is ocean, m.
+const BREAKING_M: f32 = 17_000.0;
+/// How far the rate of thickening is smoothed back, My.
+const RATE_MEMORY_MYR: f64 = 1.0;
+
+/// Settings of a run in SI units and My.
+#[derive(Clone, Copy, Debug)]
+pub struct Rules {
+    /// Ranges.
+    pub belt: Belt,
+    /// Arcs.
+    pub arc: Arc,
+    /// Thickness that subduction adds over the length that closed, m.
+    pub accretion_m: f64,
+    /// Height a volcano gains while `speed` of convergence lasts a million years, m.
+    pub volcano_m_per_myr: f64,
+    /// Speed at which volcanoes grow at that rate, m/yr.
+    pub speed_m_per_yr: f64,
+    /// Length of the run, My.
+    pub duration_myr: f64,
+}
+
+/// What entered and left the crust, m³.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Books {
+    /// Crust when the run began.
+    pub start_m3: f64,
+    /// Made at ridges, by accretion and by volcanoes.
+    pub made_m3: f64,
+    /// Sunk below other plates.
+    pub sunk_m3: f64,
+    /// Waiting to be moved.
+    pub pending_m3: f64,
+}
+
+/// Convergence between two plates.
+#[derive(Clone, Copy, Debug)]
+pub struct Closing {
+    /// The pair.
+    pub plates: [usize; 2],
+    /// Length closed (negative: opened) so far, m.
+    pub closed_m: f64,
+}
+
+/// The plates in motion.
+pub struct Simulation {
+    /// The square.
+    pub domain: Domain,
+    /// The plates and their ground.
+    pub plates: Vec<Plate>,
+    /// Owners after the last step.
+    pub owners: Owners,
+    /// Who overrides whom.
+    pub polarity: Polarity,
+    /// Crust made and lost.
+    pub books: Books,
+    /// Convergence by pair, sorted.
+    pub closings: Vec<Closing>,
+    /// Closing stretches of the last step.
+    pub stretches: Vec<Stretch>,
+    /// The bodies.
+    pub engine: Engine,
+    /// My since the run began.
+    pub time_myr: f64,
+    rules: Rules,
+    key: Key,
+    /// Crust of continents that gave way, by loser and winner, waiting for a border to be raised along.
+    pots: Vec<Pot>,
+    grips: Vec<Grip>,
+    step: u64,
+    steps: u64,
+    engine_steps: u64,
+}
+
+#[derive(Clone, Debug)]
+struct Pot {
+    loser: usize,
+    winner: usize,
+    volume_m3: f64,
+    points: Vec<DVec2>,
+}
+
+impl Simulation {
+    /// A run ready for its first step.
+    pub fn new(domain: Domain, plates: Vec<Plate>, engine: Engine, rules: Rules, key: Key) -> Self {
+        let polarity = Polarity::of(&plates);
+        let owners = exchange::compose(&domain, &plates, &polarity);
+        let books = Books { start_m3: plates.iter().map(Plate::crust_m3).sum(), ..Books::default() };
+        // A plate moves a thirtieth of a unit an engine step at the plate speed; two that meet, twice that.
+        let cells_per_step = 2.0 * engine.step_yr() * rules.speed_m_per_yr / domain.cell_m();
+        let engine_steps = ((1.5 / cells_per_step) as u64).max(1);
+        let steps = (rules.duration_myr * 1e6 / (engine.step_yr() * engine_steps as f64)).ceil().max(1.0) as u64;
+        let grips = vec![Grip::default(); plates.len() * plates.len()];
+        Self {
+            domain,
+            plates,
+            owners,
+            polarity,
+            books,
+            closings: Vec::new(),
+            stretches: Vec::new(),
+            engine,
+            time_myr: 0.0,
+            rules,
+            key,
+            pots: Vec::new(),
+            grips,
+            step: 0,
+            steps,
+            engine_steps,
+        }
+    }
+
+    /// Steps the run takes in all.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Steps taken.
+    pub fn steps_done(&self) -> u64 {
+        self.step
+    }
+
+    /// Crust on all plates and on its way, m³.
+    pub fn crust_m3(&self) -> f64 {
+        self.plates.iter().map(Plate::crust_m3).sum::<f64>() + self.books.pending_m3
+    }
+
+    /// One geologic step.
+    pub fn advance(&mut self) {
+        let contacts = self.move_plates();
+        let step_myr = self.step_myr();
+        self.time_myr += step_myr;
+        for (plate, pose) in (0..self.plates.len()).map(|p| (p, self.engine.pose(p))) {
+            self.plates[plate].pose = pose;
+        }
+        self.owners = exchange::compose(&self.domain, &self.plates, &self.polarity);
+        let lost = exchange::consume(&self.domain, &mut self.plates, &self.owners);
+        self.collect(lost);
+        self.fill_gaps();
+        self.read_stretches(&contacts);
+        self.fade_rates(step_myr);
+        self.raise(step_myr);
+        self.erupt(step_myr);
+        self.step += 1;
+    }
+
+    fn step_myr(&self) -> f64 {
+        self.engine.step_yr() * self.engine_steps as f64 * 1e-6
+    }
+
+    /// Runs the engine, adds up what each pair closed, and returns the last contacts.
+    fn move_plates(&mut self) -> Vec<Contact> {
+        let n = self.plates.len();
+        let mut contacts = Vec::new();
+        for _ in 0..self.engine_steps {
+            let grips = &self.grips;
+            self.engine.step(|a, b| grips[a * n + b]);
+            contacts = self.engine.contacts();
+            for contact in &contacts {
+                let closed = contact.closing_m_per_yr() * self.engine.step_yr();
+                match self.closings.binary_search_by_key(&contact.plates, |c| c.plates) {
+                    Ok(at) => self.closings[at].closed_m += closed,
+                    Err(at) => self.closings.insert(at, Closing { plates: contact.plates, closed_m: closed }),
+                }
+            }
+        }
+        contacts
+    }
+
+    /// Sorts lost crust: what sinks leaves the books, what is too light waits to be raised.
+    fn collect(&mut self, lost: Vec<Lost>) {
+        let area = self.domain.cell_m() * self.domain.cell_m();
+        for cell in lost {
+            let volume = cell.rock.thickness_m() * area;
+            // Ocean floor sinks; arcs and plateaus on it are scraped off.
+            let kept = if cell.rock.kind > 0.5 { volume } else { (cell.rock.added_m + cell.rock.edifice_m) as f64 * area };
+            self.books.sunk_m3 += volume - kept;
+            if kept > 0.0 {
+                self.books.pending_m3 += kept;
+                let pot = self.pot(cell.loser, cell.winner);
+                pot.volume_m3 += kept;
+                pot.points.push(cell.at_m);
+            }
+        }
+    }
+
+    fn pot(&mut self, loser: usize, winner: usize) -> &mut Pot {
+        let at = self.pots.iter().position(|p| (p.loser, p.winner) == (loser, winner)).unwrap_or_else(|| {
+            self.pots.push(Pot { loser, winner, volume_m3: 0.0, points: Vec::new() });
+            self.pots.len() - 1
+        });
+        &mut self.pots[at]
+    }
+
+    /// New crust in the gaps: ocean floor, or continent stretched out of the plate beside it.
+    fn fill_gaps(&mut self) {
+        let area = self.domain.cell_m() * self.domain.cell_m();
+        let n = self.domain.cells;
+        let mut rifts: Vec<(usize, f64, Vec<DVec2>)> = Vec::new();
+        for gap in exchange::gaps(&self.domain, &self.owners) {
+            let at_m = self.domain.cell_center_m(gap.cell % n, gap.cell / n);
+            let rim_m = self.domain.cell_center_m(gap.rim % n, gap.rim / n);
+            let time = self.time_myr as f32;
+            let plate = &mut self.plates[gap.plate];
+            let Some(cell) = plate.cell_under(at_m).filter(|&c| !plate.owned[c]) else { continue };
+            let rim = plate.owned_under(rim_m).map(|c| plate.rock[c]);
+            plate.owned[cell] = true;
+            match rim.filter(|r| r.kind > 0.5 && r.crust_m > BREAKING_M) {
+                Some(rim) => {
+                    let crust_m = rim.crust_m * STRETCHED;
+                    plate.rock[cell] = Rock { crust_m, kind: rim.kind, born_myr: rim.born_myr, ..Rock::default() };
+                    let volume = crust_m as f64 * area;
+                    match rifts.iter_mut().find(|r| r.0 == gap.plate) {
+                        Some(rift) => {
+                            rift.1 += volume;
+                            rift.2.push(at_m);
+                        }
+                        None => rifts.push((gap.plate, volume, vec![at_m])),
+                    }
+                }
+                None => {
+                    let crust_m = crust::OCEAN_THICKNESS_M as f32;
+                    plate.rock[cell] = Rock { crust_m, born_myr: time, ..Rock::default() };
+                    self.books.made_m3 += crust_m as f64 * area;
+                }
+            }
+        }
+        for (plate, volume_m3, points) in rifts {
+            self.stretch_out(plate, volume_m3, &points);
+        }
+    }
+
+    /// Takes the crust of new rift cells from the continent around them.
+    fn stretch_out(&mut self, plate: usize, volume_m3: f64, points: &[DVec2]) {
+        let path_m = raise::spine(points, self.rules.belt.half_width_m);
+        let line = Line { path_m, lean: DVec2::ZERO, offset_m: 0.0, plates: [plate; 2], work: Work::Thin };
+        let key = self.key.named("rift").with(self.step).with(plate as u64);
+        let shares = raise::shares(&self.plates, &line, &self.rules.belt, key, &mut Brush::new());
+        let taken = self.apply(&shares, -volume_m3, |rock| &mut rock.crust_m);
+        // What the draws could not find is booked as made: melt that fills the rift.
+        self.books.made_m3 += volume_m3 + taken;
+    }
+
+    fn read_stretches(&mut self, contacts: &[Contact]) {
+        let n = self.plates.len();
+        let piece = self.rules.belt.half_width_m;
+        self.grips.fill(Grip::default());
+        self.stretches.clear();
+        for contact in contacts {
+            let stretches = stretch::closing_stretches(contact, &self.plates, &self.polarity, piece);
+            let [a, b] = contact.plates;
+            self.grips[a * n + b] = stretch::grip(&stretches);
+            self.stretches.extend(stretches);
+        }
+    }
+
+    fn fade_rates(&mut self, step_myr: f64) {
+        let keep = libm::exp(-step_myr / RATE_MEMORY_MYR) as f32;
+        self.plates.par_iter_mut().for_each(|plate| plate.rock.iter_mut().for_each(|r| r.rate_m_per_myr *= keep));
+    }
+
+    /// Raises ranges along closing borders: collided crust from the pots, accreted crust along subduction zones.
+    fn raise(&mut self, step_myr: f64) {
+        let mut jobs: Vec<(Line, f64)> = Vec::new();
+        for pot in std::mem::take(&mut self.pots) {
+            jobs.push((self.collision_line(&pot), pot.volume_m3));
+            self.books.pending_m3 -= pot.volume_m3;
+        }
+        for s in self.stretches.iter().filter(|s| s.meeting == Meeting::Subduction) {
+            let volume = s.closing_m_per_yr * step_myr * 1e6 * s.length_m() * self.rules.accretion_m;
+            let path_m = s.ends_m.to_vec();
+            let offset_m = 0.8 * self.rules.arc.offset_m;
+            jobs.push((Line { path_m, lean: s.inland, offset_m, plates: [s.over; 2], work: Work::Thicken }, volume));
+            self.books.made_m3 += volume;
+        }
+        let key = self.key.named("raise").with(self.step);
+        let shares: Vec<Vec<Share>> = jobs
+            .par_iter()
+            .enumerate()
+            .map_init(Brush::new, |brush, (i, (line, _))| raise::shares(&self.plates, line, &self.rules.belt, key.with(i as u64), brush))
+            .collect();
+        for ((line, volume), shares) in jobs.iter().zip(&shares) {
+            let put = self.apply(shares, *volume, |rock| &mut rock.added_m);
+            self.note_rates(shares, *volume);
+            if shares.is_empty() {
+                // Nowhere to put it: it founders. Booked, so that nothing is lost unseen.
+                self.books.sunk_m3 += volume - put;
+            } else {
+                // Rounding of the f32 state.
+                self.books.made_m3 += put - volume;
+            }
+            debug_assert!(line.path_m.iter().all(|p| p.is_finite()));
+        }
+    }
+
+    /// The border along which a pot is raised: the pair's colliding stretches, or the middle of what was lost.
+    fn collision_line(&self, pot: &Pot) -> Line {
+        let mut path_m: Vec<DVec2> = Vec::new();
+        let mut lean = DVec2::ZERO;
+        let pair = |s: &&Stretch| (s.over, s.under) == (pot.winner, pot.loser) && s.meeting == Meeting::Collision;
+        for s in self.stretches.iter().filter(pair) {
+            path_m.extend(s.ends_m);
+            lean = s.inland;
+        }
+        if path_m.is_empty() {
+            path_m = raise::spine(&pot.points, self.rules.belt.half_width_m);
+        }
+        Line { path_m, lean, offset_m: 0.0, plates: [pot.winner, pot.loser], work: Work::Thicken }
+    }
+
+    /// Adds `volume_m3` to a part of the rock by shares; returns what the f32 state really took.
+    fn apply(&mut self, shares: &[Share], volume_m3: f64, part: impl Fn(&mut Rock) -> &mut f32) -> f64 {
+        let area = self.domain.cell_m() * self.domain.cell_m();
+        let mut got = 0.0;
+        for s in shares {
+            let value = part(&mut self.plates[s.plate].rock[s.cell]);
+            let old = *value;
+            *value = (old as f64 + volume_m3 * s.share / area) as f32;
+            got += *value as f64 - old as f64;
+        }
+        got * area
+    }
+
+    fn note_rates(&mut self, shares: &[Share], volume_m3: f64) {
+        let area = self.domain.cell_m() * self.domain.cell_m();
+        for s in shares {
+            let gained = volume_m3 * s.share / area;
+            self.plates[s.plate].rock[s.cell].rate_m_per_myr += (gained / RATE_MEMORY_MYR) as f32;
+        }
+    }
+
+    /// Grows the volcanoes of all arcs.
+    fn erupt(&mut self, step_myr: f64) {
+        let key = self.key.named("erupt").with(self.step);
+        let sites = self.key.named("volcano sites");
+        let rules = &self.rules;
+        let gains: Vec<Vec<Share>> = self
+            .stretches
+            .par_iter()
+            .enumerate()
+            .map_init(Brush::new, |brush, (i, s)| {
+                let pace = (s.closing_m_per_yr / rules.speed_m_per_yr).min(2.0);
+                let height_m = rules.volcano_m_per_myr * pace * step_myr;
+                arc::cones(&self.plates[s.over], s, &rules.arc, height_m, key.with(i as u64), sites.with(s.over as u64), brush)
+            })
+            .collect();
+        let area = self.domain.cell_m() * self.domain.cell_m();
+        for gains in gains {
+            self.books.made_m3 += self.apply(&gains, area, |rock| &mut rock.edifice_m);
+        }
+    }
+}

@@ -1,0 +1,351 @@
+//! The `plates` stage: sets a run up from its parameters, steps it, and publishes what the world may see.
+
+use glam::DVec2;
+
+use crate::{
+    grid::{Field, Grid},
+    noise::Key,
+    process::{Context, Placement, Process, ProcessError, State, Step},
+    world::{Layer, Matter, Table, World},
+};
+
+use super::{
+    arc::Arc,
+    domain::{Domain, SIDE_UNITS},
+    engine::{Drive, Engine, Settings, Style},
+    initial,
+    mantle::Mantle,
+    paint,
+    params::{PlateStyle, PlatesParams},
+    partition::{self, Polygon},
+    plate::Plate,
+    raise::Belt,
+    simulation::{Books, Rules, Simulation},
+    surface::Surface,
+    tables::{self, Drift},
+    thesis::Thesis,
+    warp::Warp,
+};
+
+/// Share of the square that the thesis's block of plates fills.
+const THESIS_BLOCK: f64 = 0.9;
+
+impl PlatesParams {
+    /// The stage as a process.
+    pub fn process(self, placement: Placement) -> Box<dyn Process> {
+        Box::new(Stage { params: self, placement, base: None, run: None, resume: None })
+    }
+}
+
+struct Stage {
+    params: PlatesParams,
+    placement: Placement,
+    /// Bedrock before the stage.
+    base: Option<Field<f32>>,
+    run: Option<Run>,
+    resume: Option<Resume>,
+}
+
+enum Run {
+    Geologic(Box<Geologic>),
+    Thesis(Box<Thesis>),
+}
+
+struct Geologic {
+    simulation: Simulation,
+    warp: Warp,
+    first: Vec<Drift>,
+    /// Outlines in body coordinates, m.
+    bodies: Vec<Vec<DVec2>>,
+    booked: Books,
+}
+
+/// Where a saved run stood: steps taken, and what the ledger has of it.
+#[derive(Clone, Copy)]
+struct Resume {
+    steps: u64,
+    booked: Books,
+}
+
+impl Process for Stage {
+    fn writes(&self) -> &'static [Layer] {
+        &[
+            Layer::Bedrock,
+            Layer::Uplift,
+            Layer::PlateId,
+            Layer::CrustKind,
+            Layer::CrustAge,
+            Layer::CrustThickness,
+            Layer::BoundaryKind,
+        ]
+    }
+
+    fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
+        if self.run.is_none() {
+            self.begin(world, context)?;
+        }
+        let Some(run) = &mut self.run else { return Ok(Step::WHOLE) };
+        let before = run.time_yr(&self.params);
+        run.advance();
+        context.check()?;
+        let (steps, done) = run.progress();
+        if !run.finite() {
+            return Err(ProcessError::Failed(format!("a plate left the numbers at step {done}; lower speed_mm_per_yr")));
+        }
+        Ok(Step { done: done as f64 / steps as f64, elapsed_yr: run.time_yr(&self.params) - before })
+    }
+
+    fn publish(&mut self, world: &mut World, context: &Context) -> Result<(), ProcessError> {
+        let (Some(run), Some(base)) = (&mut self.run, &self.base) else { return Ok(()) };
+        match run {
+            Run::Geologic(run) => run.publish(&self.params, &self.placement, base, world, context)?,
+            Run::Thesis(run) => {
+                self.placement.put(base, &run.height, world, context)?;
+                let grid = world.grid;
+                let ids = run.owners.iter().map(|&o| o as f32).collect();
+                world.set_layer(Layer::PlateId, Field { grid, data: ids });
+                world.set_table(thesis_table(run));
+            }
+        }
+        if let Some(share) = self.params.land_share {
+            world.sea_level_m = sea_level_for(&world.height(), share);
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> State {
+        let (steps, booked) = match &self.run {
+            Some(Run::Geologic(run)) => (run.simulation.steps_done(), run.booked),
+            Some(Run::Thesis(run)) => (run.progress().1, Books::default()),
+            None => (0, Books::default()),
+        };
+        let numbers = [booked.start_m3, booked.made_m3, booked.sunk_m3, booked.pending_m3];
+        let blob = steps.to_le_bytes().into_iter().chain(numbers.into_iter().flat_map(f64::to_le_bytes)).collect();
+        State { fields: self.base.iter().map(|base| ("base".to_owned(), base.clone())).collect(), blob }
+    }
+
+    fn restore(&mut self, state: State, _context: &Context) -> Result<(), ProcessError> {
+        let word = |i: usize| state.blob.get(8 * i..8 * i + 8).and_then(|bytes| bytes.try_into().ok());
+        let broken = || ProcessError::Failed("the saved state of the plates is broken".to_owned());
+        let number = |i: usize| word(i).map(f64::from_le_bytes).ok_or_else(broken);
+        let steps = word(0).map(u64::from_le_bytes).ok_or_else(broken)?;
+        let booked = Books { start_m3: number(1)?, made_m3: number(2)?, sunk_m3: number(3)?, pending_m3: number(4)? };
+        self.base = state.fields.into_iter().find(|(name, _)| name == "base").map(|(_, field)| field);
+        self.resume = Some(Resume { steps, booked });
+        Ok(())
+    }
+}
+
+impl Stage {
+    /// Sets the run up; a resumed one is replayed to where it stood, which gives the same bits.
+    fn begin(&mut self, world: &mut World, context: &Context) -> Result<(), ProcessError> {
+        if self.base.is_none() {
+            self.base = Some(world.layer(Layer::Bedrock).cloned().unwrap_or_else(|| Field::filled(world.grid, 0.0)));
+        }
+        let mut run = match self.params.style {
+            PlateStyle::Geologic => Run::Geologic(Box::new(Geologic::new(&self.params, world.grid, context.key)?)),
+            PlateStyle::Thesis => Run::Thesis(Box::new(thesis(&self.params, world.grid, context.key)?)),
+        };
+        if let Some(resume) = self.resume.take() {
+            for _ in 0..resume.steps {
+                context.check()?;
+                run.advance();
+            }
+            if let Run::Geologic(run) = &mut run {
+                run.booked = resume.booked;
+            }
+        } else if let Run::Geologic(run) = &run {
+            world.ledger.open(context.stage, Matter::Crust, run.simulation.crust_m3());
+        }
+        self.run = Some(run);
+        Ok(())
+    }
+}
+
+impl Run {
+    fn advance(&mut self) {
+        match self {
+            Run::Geologic(run) => run.simulation.advance(),
+            Run::Thesis(run) => run.advance(),
+        }
+    }
+
+    fn progress(&self) -> (u64, u64) {
+        match self {
+            Run::Geologic(run) => (run.simulation.steps(), run.simulation.steps_done()),
+            Run::Thesis(run) => run.progress(),
+        }
+    }
+
+    /// Years since the stage began: its duration in equal steps.
+    fn time_yr(&self, params: &PlatesParams) -> f64 {
+        let (steps, done) = self.progress();
+        params.duration_myr * 1e6 * (done as f64 / steps as f64)
+    }
+
+    fn finite(&self) -> bool {
+        match self {
+            Run::Geologic(run) => run.simulation.engine.finite(),
+            Run::Thesis(run) => run.engine.finite(),
+        }
+    }
+}
+
+fn settings(params: &PlatesParams, style: Style) -> Settings {
+    Settings { speed_mm_per_yr: params.speed_mm_per_yr, resistance: params.resistance, slab_pull: params.slab_pull, style }
+}
+
+impl Geologic {
+    fn new(params: &PlatesParams, map: Grid, key: Key) -> Result<Self, ProcessError> {
+        let domain = Domain::around(&map, params.margin, params.cells as usize);
+        let warp = Warp::new(domain.map_m, params.bend, key.named("warp"));
+        let (owners, outlines) = match &params.map {
+            Some(path) => {
+                let (owners, count) = paint::plates(&domain, &warp, path)?;
+                let outlines = paint::hulls(&domain, &owners, count);
+                (owners, outlines)
+            }
+            None => {
+                let outlines = partition::cut(domain.square_engine(), params.count as usize, key.named("cuts"));
+                (initial::owners_of(&domain, &outlines), outlines)
+            }
+        };
+        let painted = params.continents.as_deref().map(|path| paint::light(&domain, &warp, path)).transpose()?;
+        let mut kind = initial::continents(&domain, params, painted.as_ref(), key);
+        let drives = drives(params, &domain, &warp, &owners, outlines.len(), &mut kind)?;
+        let rocks = initial::rocks(&domain, params, &kind, key);
+        let mantle = Mantle::new(params.closing, key.named("mantle"));
+        let engine = Engine::new(domain, &outlines, drives, mantle, settings(params, Style::Overriding))
+            .ok_or_else(|| ProcessError::Unfit("a plate is too thin to move; draw it broader".to_owned()))?;
+        // Room for what a plate may win or move in the run.
+        let reach_m = 2.0 * params.speed_mm_per_yr * 1e3 * params.duration_myr;
+        let n = domain.cells;
+        let plates: Vec<Plate> = (0..outlines.len())
+            .map(|p| Plate::new(&domain, engine.pose(p), reach_m, |x, y| owners[y * n + x] as usize == p, |x, y| rocks[y * n + x]))
+            .collect();
+        let bodies = outlines.iter().enumerate().map(|(p, o)| {
+            o.iter().map(|&v| engine.pose(p).to_body(domain.to_map(v))).collect()
+        });
+        let bodies = bodies.collect();
+        let simulation = Simulation::new(domain, plates, engine, rules(params), key);
+        let first = (0..simulation.plates.len())
+            .map(|p| Drift::of(simulation.engine.velocity_at(p, tables::middle(&simulation, p).0)))
+            .collect();
+        let booked = Books { start_m3: simulation.books.start_m3, ..Books::default() };
+        Ok(Self { simulation, warp, first, bodies, booked })
+    }
+
+    fn publish(
+        &mut self,
+        params: &PlatesParams,
+        placement: &Placement,
+        base: &Field<f32>,
+        world: &mut World,
+        context: &Context,
+    ) -> Result<(), ProcessError> {
+        let run = &self.simulation;
+        let surface = Surface::of(run, params);
+        context.check()?;
+        for (layer, field) in surface.read(world.grid, &self.warp, params, context.key.named("detail")) {
+            match layer {
+                Layer::Bedrock => placement.put(base, &field, world, context)?,
+                other => world.set_layer(other, field),
+            }
+        }
+        world.set_table(tables::plates(run, &self.warp, &self.first));
+        world.set_table(tables::outlines(run, &self.warp, &self.bodies));
+        world.set_table(tables::convergence(run));
+        let books = run.books;
+        world.ledger.book_in(context.stage, Matter::Crust, books.made_m3 - self.booked.made_m3);
+        world.ledger.book_out(context.stage, Matter::Crust, books.sunk_m3 - self.booked.sunk_m3);
+        world.ledger.close(context.stage, Matter::Crust, run.crust_m3());
+        self.booked = books;
+        Ok(())
+    }
+}
+
+fn rules(params: &PlatesParams) -> Rules {
+    Rules {
+        belt: Belt {
+            half_width_m: params.belt_km * 1e3,
+            octaves: params.belt_octaves,
+            gain: params.belt_gain,
+            thickest_m: params.thickest_km * 1e3,
+        },
+        arc: Arc { offset_m: params.arc_km * 1e3, spacing_m: params.volcano_spacing_km * 1e3 },
+        accretion_m: params.accretion_km * 1e3,
+        volcano_m_per_myr: params.volcano_m_per_myr,
+        speed_m_per_yr: params.speed_mm_per_yr * 1e-3,
+        duration_myr: params.duration_myr,
+    }
+}
+
+/// What moves each plate; entries are found by the point of the map that shows them.
+fn drives(
+    params: &PlatesParams,
+    domain: &Domain,
+    warp: &Warp,
+    owners: &[u8],
+    count: usize,
+    kind: &mut Field<f32>,
+) -> Result<Vec<Drive>, ProcessError> {
+    let mut drives = vec![Drive::Mantle; count];
+    for (index, entry) in params.plate.iter().enumerate() {
+        let at_m = DVec2::from(entry.at_km) * 1e3;
+        let [x, y] = entry.at_km;
+        let cell = super::exchange::cell_index(domain, warp.read_at(at_m)).filter(|_| domain.on_map(at_m));
+        let cell = cell.ok_or_else(|| {
+            let [w, h] = [domain.map_m.x / 1e3, domain.map_m.y / 1e3];
+            ProcessError::Unfit(format!("plate {}: at_km = [{x}, {y}] lies outside the map (0 to {w}, 0 to {h})", index + 1))
+        })?;
+        let plate = owners[cell];
+        if drives[plate as usize] != Drive::Mantle {
+            return Err(ProcessError::Unfit(format!("plate {}: at_km = [{x}, {y}] lies on a plate that an earlier entry has", index + 1)));
+        }
+        let heading = entry.heading_deg.to_radians();
+        let direction = DVec2::new(libm::sin(heading), -libm::cos(heading));
+        drives[plate as usize] = Drive::Own(direction * (entry.speed_mm_per_yr / params.speed_mm_per_yr));
+        initial::override_crust(kind, owners, plate, entry.crust);
+    }
+    Ok(drives)
+}
+
+fn thesis(params: &PlatesParams, map: Grid, key: Key) -> Result<Thesis, ProcessError> {
+    let domain = Domain::around(&map, params.margin, params.cells as usize);
+    let square: Polygon = domain.square_engine().into_iter().map(|v| v * THESIS_BLOCK).collect();
+    // Chords cross: about (count - 1) / 3 of them make `count` plates.
+    let chords = ((params.count as usize).saturating_sub(1)).div_ceil(3).max(1);
+    let outlines = partition::cut_by_chords(square, chords, key.named("cuts"));
+    let mantle = Mantle::new(0.0, key.named("mantle"));
+    let drives = vec![Drive::Mantle; outlines.len()];
+    let engine = Engine::new(domain, &outlines, drives, mantle, settings(params, Style::Shaken))
+        .ok_or_else(|| ProcessError::Unfit("a plate is too thin to move; ask for fewer plates".to_owned()))?;
+    let inside = |p: DVec2| outlines.iter().position(|o| partition::edges(o).all(|(a, b)| (b - a).perp_dot(p - a) >= 0.0));
+    let ids = Field::from_fn(map, |x, y| inside(domain.to_engine(map.center_m(x, y).into())).map_or(u8::MAX, |p| p as u8));
+    debug_assert!(SIDE_UNITS > 0.0);
+    Ok(Thesis::new(engine, domain, ids.data, map, params, key))
+}
+
+fn thesis_table(run: &Thesis) -> Table {
+    let rows: Vec<(DVec2, Drift)> = (0..run.engine.plates())
+        .map(|p| {
+            let at_m = run.engine.pose(p).at_m;
+            (at_m, Drift::of(run.engine.velocity_at(p, at_m)))
+        })
+        .collect();
+    Table::new("plates")
+        .number("id", "1", (0..rows.len()).map(|p| p as f64).collect())
+        .number("x_km", "km", rows.iter().map(|r| r.0.x * 1e-3).collect())
+        .number("y_km", "km", rows.iter().map(|r| r.0.y * 1e-3).collect())
+        .number("speed_mm_per_yr", "mm/yr", rows.iter().map(|r| r.1.speed_mm_per_yr).collect())
+        .number("heading_deg", "deg", rows.iter().map(|r| r.1.heading_deg).collect())
+}
+
+/// The sea level that leaves this share of the map dry, m.
+fn sea_level_for(height: &Field<f32>, land_share: f64) -> f64 {
+    let mut sorted = height.data.clone();
+    let below = ((1.0 - land_share) * sorted.len() as f64).round() as usize;
+    let at = below.min(sorted.len() - 1);
+    let (_, &mut value, _) = sorted.select_nth_unstable_by(at, f32::total_cmp);
+    if below == sorted.len() { value as f64 + 1.0 } else { value as f64 }
+}

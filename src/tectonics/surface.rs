@@ -1,0 +1,318 @@
+//! From crust to heights: isostasy, trenches, forelands and rifts on the tectonic raster, then the map's own reading of it
+//! through the warp, with the detail that its cells resolve.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::{
+    crust,
+    grid::{Field, Grid, cubic, for_each_row, linear, nearest_feature},
+    noise::{Fbm, Gullies, Key, Octaves},
+    world::Layer,
+};
+
+use super::{
+    border::{BorderCell, border_cells},
+    exchange::NONE,
+    params::PlatesParams,
+    plate::Rock,
+    simulation::Simulation,
+    stretch::Meeting,
+    warp::Warp,
+};
+
+/// What the map reads, on the tectonic raster.
+pub struct Surface {
+    /// Height without the map's own detail, m.
+    height: Field<f32>,
+    /// Its slope towards east and south.
+    slope: [Field<f32>; 2],
+    /// Height that young mountains have over the land around them, m.
+    mountain: Field<f32>,
+    /// Continental share.
+    kind: Field<f32>,
+    /// Age of the crust, My.
+    age: Field<f32>,
+    /// Crust, km.
+    thickness: Field<f32>,
+    /// Uplift, mm/yr.
+    uplift: Field<f32>,
+    /// Owner.
+    plate: Vec<u8>,
+    /// Boundary class and distance to it, m.
+    boundary: (Vec<u8>, Field<f32>),
+    corner_m: DVec2,
+}
+
+/// One cell of the map.
+#[derive(Clone, Copy, Default)]
+struct Reading {
+    height: f32,
+    plate: f32,
+    kind: f32,
+    age: f32,
+    thickness: f32,
+    uplift: f32,
+    boundary: f32,
+}
+
+impl Surface {
+    /// The surface of a run as it stands.
+    pub fn of(run: &Simulation, params: &PlatesParams) -> Self {
+        let grid = run.domain.grid();
+        let (plate, rock) = ground(run);
+        let borders = border_cells(run);
+        let base = Field::from_fn(grid, |x, y| {
+            let r = &rock[grid.index(x, y)];
+            crust::height_m(r.crust_m as f64, r.kind as f64, run.time_myr - r.born_myr as f64) as f32
+        });
+        let mountain = Field::from_fn(grid, |x, y| {
+            let i = grid.index(x, y);
+            let r = &rock[i];
+            let whole = crust::height_m((r.crust_m + r.added_m) as f64, r.kind as f64, run.time_myr - r.born_myr as f64);
+            whole as f32 - base.data[i] + r.edifice_m
+        });
+        // The strength of the plates carries short loads: what the crust's thickness was at the start shows smoothed.
+        let stiff = blurred(&base, params.belt_km * 1e3 / 4.0);
+        let shapes = blurred(&profiles(run, params, &borders, &plate, &rock), 1.5 * grid.cell_m);
+        let mountain = blurred(&mountain, 0.7 * grid.cell_m);
+        let height = Field::from_fn(grid, |x, y| stiff.at(x, y) + shapes.at(x, y) + mountain.at(x, y));
+        let slope = [0, 1].map(|axis| Field::from_fn(grid, |x, y| height.gradient(x, y)[axis] as f32));
+        let part = |f: fn(&Rock) -> f32| Field::from_fn(grid, |x, y| f(&rock[grid.index(x, y)]));
+        let time = run.time_myr as f32;
+        Self {
+            slope,
+            mountain,
+            kind: part(|r| r.kind),
+            age: Field::from_fn(grid, |x, y| time - rock[grid.index(x, y)].born_myr),
+            thickness: part(|r| (r.thickness_m() * 1e-3) as f32),
+            // Thickening shows as uplift by Airy's factor; m/My are mm/yr times a thousand.
+            uplift: part(|r| r.rate_m_per_myr * ((1.0 - crust::CONTINENTAL / crust::MANTLE) * 1e-3) as f32),
+            boundary: boundary_layer(grid, &borders),
+            height,
+            plate,
+            corner_m: run.domain.corner_m,
+        }
+    }
+
+    /// Reads the surface onto a map: one field a layer.
+    pub fn read(&self, map: Grid, warp: &Warp, params: &PlatesParams, key: Key) -> Vec<(Layer, Field<f32>)> {
+        let detail = Detail::new(map, params, key);
+        let mut readings = vec![Reading::default(); map.cells()];
+        for_each_row(&mut readings, map.width, |y, row| {
+            for (x, reading) in row.iter_mut().enumerate() {
+                *reading = self.read_cell(map.center_m(x, y).into(), warp, &detail);
+            }
+        });
+        let layers: [(Layer, fn(&Reading) -> f32); 7] = [
+            (Layer::Bedrock, |r| r.height),
+            (Layer::PlateId, |r| r.plate),
+            (Layer::CrustKind, |r| r.kind),
+            (Layer::CrustAge, |r| r.age),
+            (Layer::CrustThickness, |r| r.thickness),
+            (Layer::Uplift, |r| r.uplift),
+            (Layer::BoundaryKind, |r| r.boundary),
+        ];
+        layers
+            .into_par_iter()
+            .map(|(layer, part)| (layer, Field { grid: map, data: readings.iter().map(part).collect() }))
+            .collect()
+    }
+
+    fn read_cell(&self, at_m: DVec2, warp: &Warp, detail: &Detail) -> Reading {
+        let (q_m, rows) = warp.read_with_jacobian(at_m);
+        let q: [f64; 2] = (q_m - self.corner_m).into();
+        let base = cubic(&self.height, q);
+        let slope = DVec2::new(linear(&self.slope[0], q), linear(&self.slope[1], q));
+        // Chain rule: the slope on the map is the transposed Jacobian times the slope in the plates.
+        let slope = DVec2::new(rows[0].x * slope.x + rows[1].x * slope.y, rows[0].y * slope.x + rows[1].y * slope.y);
+        let kind = linear(&self.kind, q);
+        let mountain = linear(&self.mountain, q);
+        let i = self.cell_at(q);
+        let (class, distance) = (&self.boundary.0, &self.boundary.1);
+        let near = (distance.data[i] as f64) < detail.border_m;
+        Reading {
+            height: (base + detail.height(at_m, base, slope, kind, mountain)) as f32,
+            plate: self.plate_at(q) as f32,
+            kind: kind.clamp(0.0, 1.0) as f32,
+            age: linear(&self.age, q).max(0.0) as f32,
+            thickness: linear(&self.thickness, q) as f32,
+            uplift: linear(&self.uplift, q) as f32,
+            boundary: if near { class[i] as f32 } else { 0.0 },
+        }
+    }
+
+    fn cell_at(&self, q: [f64; 2]) -> usize {
+        let g = &self.height.grid;
+        let clamp = |v: f64, n: usize| ((v / g.cell_m).max(0.0) as usize).min(n - 1);
+        g.index(clamp(q[0], g.width), clamp(q[1], g.height))
+    }
+
+    /// The owner with most of the bilinear weight around a point: borders smoother than the raster's steps.
+    fn plate_at(&self, q: [f64; 2]) -> u8 {
+        let g = &self.height.grid;
+        let half = 0.5 * g.cell_m;
+        let corners = [[-half, -half], [half, -half], [-half, half], [half, half]].map(|d| self.plate[self.cell_at([q[0] + d[0], q[1] + d[1]])]);
+        if corners.iter().all(|&c| c == corners[0]) {
+            return corners[0];
+        }
+        let f = [q[0], q[1]].map(|v| (v / g.cell_m - 0.5).rem_euclid(1.0));
+        let weights = [(1.0 - f[0]) * (1.0 - f[1]), f[0] * (1.0 - f[1]), (1.0 - f[0]) * f[1], f[0] * f[1]];
+        let weight = |id: u8| (0..4).filter(|&k| corners[k] == id).map(|k| weights[k]).sum::<f64>();
+        corners.into_iter().max_by(|&a, &b| weight(a).total_cmp(&weight(b)).then(b.cmp(&a))).unwrap_or(corners[0])
+    }
+}
+
+/// Owner and rock of every tectonic cell; cracks too narrow to be exchanged are read from the nearest plate.
+fn ground(run: &Simulation) -> (Vec<u8>, Vec<Rock>) {
+    let n = run.domain.cells;
+    let top = &run.owners.top;
+    let nearest = nearest_feature(run.domain.grid(), |i| top[i] != NONE);
+    let cells: Vec<(u8, Rock)> = (0..n * n)
+        .into_par_iter()
+        .map(|i| {
+            let from = if top[i] != NONE { i } else { nearest.index.data[i] as usize };
+            let owner = top.get(from).copied().unwrap_or(0);
+            let at_m = run.domain.cell_center_m(i % n, i / n);
+            let plate = &run.plates[owner as usize];
+            let beside = || plate.sample(run.domain.cell_center_m(from % n, from / n));
+            (owner, plate.sample(at_m).or_else(beside).unwrap_or(Rock { crust_m: crust::OCEAN_THICKNESS_M as f32, ..Rock::default() }))
+        })
+        .collect();
+    cells.into_iter().unzip()
+}
+
+/// Shapes that borders press into the ground beside them, m.
+fn profiles(run: &Simulation, params: &PlatesParams, borders: &[BorderCell], plate: &[u8], rock: &[Rock]) -> Field<f32> {
+    let grid = run.domain.grid();
+    let mut shape = Field::filled(grid, 0.0f32);
+    let belt_m = params.belt_km * 1e3;
+    for meeting in [Meeting::Subduction, Meeting::Collision, Meeting::Spreading] {
+        let mut at = vec![None; grid.cells()];
+        for border in borders.iter().filter(|b| b.meeting == meeting) {
+            at[border.cell] = Some(*border);
+        }
+        let near = nearest_feature(grid, |i| at[i].is_some());
+        for_each_row(&mut shape.data, grid.width, |y, row| {
+            for (x, value) in row.iter_mut().enumerate() {
+                let i = grid.index(x, y);
+                let d = near.distance_m.data[i] as f64;
+                let Some(border) = at.get(near.index.data[i] as usize).copied().flatten() else { continue };
+                // How long this border has been at work: full after 40 km.
+                let moved = border.closing_m_per_yr.abs() * run.time_myr * 1e6;
+                let strength = (moved / 40e3).min(1.0);
+                let under = plate[i] as usize == border.under;
+                *value += (strength * profile(meeting, d, under, &rock[i], params, belt_m)) as f32;
+            }
+        });
+    }
+    shape
+}
+
+fn profile(meeting: Meeting, d: f64, under: bool, rock: &Rock, params: &PlatesParams, belt_m: f64) -> f64 {
+    let bell = |x: f64, width: f64| libm::exp(-(x / width) * (x / width));
+    let land = rock.kind as f64;
+    match meeting {
+        // Trench with a steep inner and a gentle outer wall, then the outer rise.
+        Meeting::Subduction if under => (1.0 - land) * (350.0 * bell(d - 110e3, 45e3) - params.trench_m * bell(d, 38e3)),
+        Meeting::Subduction => -0.8 * params.trench_m * bell(d, 16e3),
+        // The foreland bends down under the range's weight, a belt's width before its front.
+        Meeting::Collision if under => -550.0 * land * bell(d - 1.3 * belt_m, 0.8 * belt_m),
+        Meeting::Collision => 0.0,
+        // Graben and shoulders, in continents only: sea floor has its ridge from its age.
+        Meeting::Spreading => land * (900.0 * bell(d - 42e3, 24e3) - 1300.0 * bell(d, 20e3)),
+        Meeting::Transform => 0.0,
+    }
+}
+
+/// Class of the nearest border (catalogue numbers) and the distance to it.
+fn boundary_layer(grid: Grid, borders: &[BorderCell]) -> (Vec<u8>, Field<f32>) {
+    let mut class = vec![0u8; grid.cells()];
+    for border in borders {
+        class[border.cell] = match border.meeting {
+            Meeting::Collision => 1,
+            Meeting::Subduction => 2,
+            Meeting::Spreading => 3,
+            Meeting::Transform => 4,
+        };
+    }
+    let near = nearest_feature(grid, |i| class[i] != 0);
+    let classes = near.index.data.iter().map(|&i| class.get(i as usize).copied().unwrap_or(0)).collect();
+    (classes, near.distance_m)
+}
+
+/// Smoothed by three box passes either way, close to a Gaussian of this standard deviation.
+fn blurred(field: &Field<f32>, deviation_m: f64) -> Field<f32> {
+    // Three boxes of 2r + 1 cells have variance (2r + 1)² - 1, divided by 4.
+    let cells = deviation_m / field.grid.cell_m;
+    let radius = (((4.0 * cells * cells + 1.0).sqrt() - 1.0) / 2.0).round() as usize;
+    let mut out = field.clone();
+    if radius == 0 {
+        return out;
+    }
+    for _ in 0..3 {
+        out = box_rows_transposed(&box_rows_transposed(&out, radius), radius);
+    }
+    out
+}
+
+/// Box mean along rows, written transposed (the tectonic raster is square).
+fn box_rows_transposed(field: &Field<f32>, radius: usize) -> Field<f32> {
+    let n = field.grid.width;
+    let mut rows = vec![0.0f32; n * n];
+    for_each_row(&mut rows, n, |y, out| {
+        let row = field.row(y);
+        let at = |i: isize| row[i.clamp(0, n as isize - 1) as usize] as f64;
+        let r = radius as isize;
+        let mut sum: f64 = (-r..=r).map(at).sum();
+        for (x, v) in out.iter_mut().enumerate() {
+            *v = (sum / (2 * r + 1) as f64) as f32;
+            sum += at(x as isize + r + 1) - at(x as isize - r);
+        }
+    });
+    Field::from_fn(field.grid, |x, y| rows[x * n + y])
+}
+
+/// Detail finer than the tectonic cells: plains and sea floor by fractal sums, mountains by ridges and gullies.
+struct Detail {
+    plains: Octaves,
+    ridges: Octaves,
+    gullies: Gullies,
+    gully_key: Key,
+    cell_m: f64,
+    ruggedness: f64,
+    border_m: f64,
+}
+
+impl Detail {
+    fn new(map: Grid, params: &PlatesParams, key: Key) -> Self {
+        let belt_m = params.belt_km * 1e3;
+        Self {
+            plains: Fbm::new(2.0 * belt_m, 0.75).octaves(key.named("plains"), map.cell_m),
+            ridges: Fbm::new(0.9 * belt_m, 0.9).octaves(key.named("ridges"), map.cell_m),
+            gullies: Gullies { wavelength_m: 0.4 * belt_m, octaves: 6, relief: 0.055, half_slope: 0.06 },
+            gully_key: key.named("gullies"),
+            cell_m: map.cell_m,
+            ruggedness: params.ruggedness,
+            border_m: map.cell_m.max(params.belt_km * 1e3 / 12.0),
+        }
+    }
+
+    fn height(&self, at_m: DVec2, base: f64, slope: DVec2, kind: f64, mountain: f64) -> f64 {
+        let at = at_m.into();
+        // Low ground near the sea is smooth, uplands are rolling, the deep floor has its hills.
+        let upland = (base / 1500.0).clamp(0.0, 1.0);
+        let plain = self.plains.value(at) * (70.0 + 110.0 * upland + 60.0 * (1.0 - kind).clamp(0.0, 1.0));
+        let rough = (mountain.max(0.0) / 2500.0).min(1.6) * self.ruggedness;
+        let mut height = plain;
+        if rough > 0.02 {
+            // Ridged sums lie between 0 and 1 with a mean near 0.7.
+            height += rough * 1300.0 * (self.ridges.ridged(at) - 0.7);
+        }
+        if base > -500.0 && self.ruggedness > 0.0 {
+            let share = ((base + 500.0) / 800.0).clamp(0.0, 1.0) * self.ruggedness;
+            height += share * self.gullies.value(self.gully_key, at, slope.into(), self.cell_m);
+        }
+        height
+    }
+}
