@@ -2,12 +2,14 @@
 
 #![warn(missing_docs)]
 
+pub mod crust;
 pub mod export;
 pub mod grid;
 pub mod measure;
 pub mod noise;
 pub mod process;
 pub mod rmp;
+pub mod tectonics;
 pub mod terrain;
 pub mod relief;
 pub mod world;

@@ -71,6 +71,16 @@ impl Field<f32> {
         (!self.data.is_empty()).then_some(range)
     }
 
+    /// The value that `share` of the cells reach or exceed: the sea level of a wanted share of land.
+    pub fn level_above(&self, share: f64) -> f64 {
+        let mut values = self.data.clone();
+        let below = ((1.0 - share) * values.len() as f64).round() as usize;
+        let Some(last) = values.len().checked_sub(1) else { return 0.0 };
+        let (_, &mut value, _) = values.select_nth_unstable_by(below.min(last), f32::total_cmp);
+        // All below: just above the highest.
+        if below > last { value.next_up() as f64 } else { value as f64 }
+    }
+
     /// The first cell whose value is not finite.
     pub fn first_non_finite(&self) -> Option<(usize, usize)> {
         self.data.iter().position(|v| !v.is_finite()).map(|i| self.grid.cell_of(i))
@@ -96,6 +106,16 @@ mod tests {
                     assert_eq!(plane.gradient(x, y), want);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_level_leaves_the_wanted_share_above() {
+        let field = Field::from_fn(Grid::new(10, 10, 10.0, Edges::Open), |x, y| (x + 10 * y) as f32);
+        for share in [0.0, 0.25, 0.5, 1.0] {
+            let level = field.level_above(share);
+            let above = field.data.iter().filter(|&&v| v as f64 >= level).count();
+            assert_eq!(above, (share * 100.0) as usize);
         }
     }
 

@@ -87,15 +87,14 @@ pub fn compose(domain: &Domain, plates: &[Plate], polarity: &Polarity) -> Owners
 }
 
 fn owners_at(at_m: DVec2, plates: &[Plate], near: &[usize], polarity: &Polarity) -> (u8, u8) {
-    let mut top: Option<(usize, &Rock)> = None;
+    let mut top: Option<(usize, usize)> = None;
     let mut below = NONE;
     for &p in near {
         let Some(i) = plates[p].owned_under(at_m) else { continue };
-        let rock = &plates[p].rock[i];
         match top {
-            Some((q, other)) if !polarity.wins(p, rock, q, other) => below = p as u8,
-            Some((q, _)) => (top, below) = (Some((p, rock)), q as u8),
-            None => top = Some((p, rock)),
+            Some((q, j)) if !polarity.wins(p, &plates[p].rock[i], q, &plates[q].rock[j]) => below = p as u8,
+            Some((q, _)) => (top, below) = (Some((p, i)), q as u8),
+            None => top = Some((p, i)),
         }
     }
     (top.map_or(NONE, |(p, _)| p as u8), below)
@@ -148,24 +147,33 @@ pub fn consume(domain: &Domain, plates: &mut [Plate], owners: &Owners) -> Vec<Lo
         .par_iter_mut()
         .enumerate()
         .map(|(p, plate)| {
+            // A third plate below two others waits until they have settled.
+            let under = |w: usize| contested[w] && owners.below[w] == p as u8;
             let mut lost = Vec::new();
-            for i in 0..plate.owned.len() {
-                if !plate.owned[i] {
-                    continue;
-                }
-                let at_m = plate.center_m(i);
-                let Some(w) = cell_index(domain, at_m) else { continue };
-                // A third plate below two others waits until they have settled.
-                if contested[w] && owners.below[w] == p as u8 {
-                    lost.push(Lost { loser: p, winner: owners.top[w] as usize, at_m, rock: plate.rock[i] });
-                    plate.owned[i] = false;
-                    plate.rock[i] = Rock::default();
+            for cell in cells_over(domain, plate, under) {
+                let at_m = plate.center_m(cell);
+                if let Some(w) = cell_index(domain, at_m).filter(|&w| plate.owned[cell] && under(w)) {
+                    lost.push(Lost { loser: p, winner: owners.top[w] as usize, at_m, rock: plate.give(cell) });
                 }
             }
             lost
         })
         .collect();
     lost.into_iter().flatten().collect()
+}
+
+/// Cells of a plate's raster in the box around the tectonic cells for which `wanted` holds.
+fn cells_over(domain: &Domain, plate: &Plate, wanted: impl Fn(usize) -> bool) -> Vec<usize> {
+    let n = domain.cells;
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for w in (0..n * n).filter(|&w| wanted(w)) {
+        let at = plate.frame.to_cells(plate.pose.to_body(domain.cell_center_m(w % n, w / n)));
+        (low, high) = (low.min(at), high.max(at));
+    }
+    let frame = &plate.frame;
+    let range = |from: f64, to: f64, size: usize| (from - 1.0).max(0.0) as usize..((to + 2.0).max(0.0) as usize).min(size);
+    let (xs, ys) = (range(low.x, high.x, frame.width), range(low.y, high.y, frame.height));
+    ys.flat_map(|y| xs.clone().map(move |x| y * frame.width + x)).collect()
 }
 
 /// The tectonic cell under a point of the map.

@@ -16,10 +16,14 @@ use super::{
     plate::Rock,
 };
 
-/// Mean thickness of continental crust, m: plains half a kilometre above the sea.
-const CONTINENT_M: f64 = 33_000.0;
+/// Mean thickness of continental crust far from the sea, m: it stands half a kilometre above it.
+const INTERIOR_M: f64 = 33_500.0;
+/// Thickness at the shelf's edge, m: some 250 m below the sea.
+const SHELF_EDGE_M: f64 = 28_500.0;
+/// Widths of the shelf over which a continent rises to its interior.
+const RISE: f64 = 4.0;
 /// Standard deviation of that thickness, m: plains and uplands.
-const CONTINENT_VARIES_M: f64 = 1_600.0;
+const CONTINENT_VARIES_M: f64 = 1_500.0;
 /// Ages of ocean floor, My.
 const OCEAN_AGE_MYR: [f64; 2] = [15.0, 120.0];
 /// Thickness that an old belt added at its crest, m: worn to about a kilometre.
@@ -45,8 +49,16 @@ fn nearest_outline(outlines: &[Polygon], at: DVec2) -> usize {
     (0..outlines.len()).min_by(|&a, &b| distance(&outlines[a]).total_cmp(&distance(&outlines[b]))).unwrap_or(0)
 }
 
-/// Continental share of every tectonic cell, 0 to 1. `painted` overrides the seeded continents.
-pub fn continents(domain: &Domain, params: &PlatesParams, painted: Option<&Field<f32>>, key: Key) -> Field<f32> {
+/// The continents before the plates move, over the tectonic raster.
+pub struct Continents {
+    /// Continental share, 0 to 1: the slope from shelf to ocean floor.
+    pub kind: Field<f32>,
+    /// Distance inwards from the shelf's edge, m; negative in the ocean.
+    pub inward_m: Field<f32>,
+}
+
+/// Continents as seeded, or as painted (light is land).
+pub fn continents(domain: &Domain, params: &PlatesParams, painted: Option<&Field<f32>>, key: Key) -> Continents {
     let grid = domain.grid();
     let land: Field<bool> = match painted {
         Some(light) => light.map(|v| v > 0.5),
@@ -54,13 +66,14 @@ pub fn continents(domain: &Domain, params: &PlatesParams, painted: Option<&Field
     };
     let to_land = nearest_feature(grid, |i| land.data[i]).distance_m;
     let to_sea = nearest_feature(grid, |i| !land.data[i]).distance_m;
-    let shelf = params.shelf_km * 1e3;
-    Field::from_fn(grid, |x, y| {
+    let far = 1e9f32;
+    let inward_m = Field::from_fn(grid, |x, y| {
         let i = grid.index(x, y);
-        // Signed distance from the edge of the continent, inwards; cells on the edge are half a cell from it.
-        let inward = if land.data[i] { to_sea.data[i] as f64 } else { -(to_land.data[i] as f64) };
-        smoothstep(0.5 + inward / shelf) as f32
-    })
+        if land.data[i] { to_sea.data[i].min(far) } else { -to_land.data[i].min(far) }
+    });
+    let slope = params.shelf_km * 1e3;
+    let kind = inward_m.map(|d| smoothstep(1.0 + d as f64 / slope) as f32);
+    Continents { kind, inward_m }
 }
 
 fn smoothstep(t: f64) -> f64 {
@@ -82,7 +95,8 @@ fn seeded_land(domain: &Domain, params: &PlatesParams, key: Key) -> Field<bool> 
 }
 
 /// Rock of every tectonic cell before anything has moved.
-pub fn rocks(domain: &Domain, params: &PlatesParams, kind: &Field<f32>, key: Key) -> Vec<Rock> {
+pub fn rocks(domain: &Domain, params: &PlatesParams, continents: &Continents, key: Key) -> Vec<Rock> {
+    let kind = &continents.kind;
     let cell = 2.0 * domain.cell_m();
     let wide = params.continent_km * 1e3;
     let uplands = Fbm::new(0.6 * wide, 0.7).octaves(key.named("uplands"), cell);
@@ -92,7 +106,11 @@ pub fn rocks(domain: &Domain, params: &PlatesParams, kind: &Field<f32>, key: Key
         .map(|i| {
             let at = domain.cell_center_m(i % domain.cells, i / domain.cells).into();
             let land = kind.data[i] as f64;
-            let continent = CONTINENT_M + CONTINENT_VARIES_M * uplands.value(at) + belts.data[i] as f64;
+            // A shelf rises steeply at first, then ever more gently to the interior.
+            let inland = (continents.inward_m.data[i] as f64 / (RISE * params.shelf_km * 1e3)).clamp(0.0, 1.0);
+            let rise = SHELF_EDGE_M + (INTERIOR_M - SHELF_EDGE_M) * inland * (2.0 - inland);
+            let varied = CONTINENT_VARIES_M * uplands.value(at) * (0.4 + 0.6 * inland);
+            let continent = rise + varied + belts.data[i] as f64;
             let crust_m = crust::OCEAN_THICKNESS_M + (continent - crust::OCEAN_THICKNESS_M) * land;
             let [young, old] = OCEAN_AGE_MYR;
             let age = young + (old - young) * smoothstep(0.5 + 0.3 * ages.value(at));
@@ -145,13 +163,15 @@ fn wandering_line(domain: &Domain, stream: &mut crate::noise::Stream) -> Vec<[f6
 }
 
 /// The crust that a plate entry asks for, applied to the plate's continental shares.
-pub fn override_crust(kind: &mut Field<f32>, owners: &[u8], plate: u8, crust: PlateCrust) {
-    let share = match crust {
+pub fn override_crust(continents: &mut Continents, owners: &[u8], plate: u8, crust: PlateCrust) {
+    let (share, inward_m) = match crust {
         PlateCrust::Mixed => return,
-        PlateCrust::Continental => 1.0,
-        PlateCrust::Oceanic => 0.0,
+        PlateCrust::Continental => (1.0, 300e3),
+        PlateCrust::Oceanic => (0.0, -300e3),
     };
-    for (value, _) in kind.data.iter_mut().zip(owners).filter(|(_, owner)| **owner == plate) {
-        *value = share;
+    for i in (0..owners.len()).filter(|&i| owners[i] == plate) {
+        continents.kind.data[i] = share;
+        let d = &mut continents.inward_m.data[i];
+        *d = if inward_m > 0.0 { d.max(inward_m) } else { d.min(inward_m) };
     }
 }

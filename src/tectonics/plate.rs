@@ -49,14 +49,30 @@ pub struct Rock {
     pub kind: f32,
     /// When the crust was made, My after the run's start (negative: before).
     pub born_myr: f32,
-    /// Speed of thickening, smoothed over the last million years, m/My.
+    /// Speed of thickening when it was last noted, smoothed over the last million years, m/My.
     pub rate_m_per_myr: f32,
+    /// When that was, My after the run's start.
+    pub rated_myr: f32,
 }
+
+/// How far back the speed of thickening is smoothed, My.
+const RATE_MEMORY_MYR: f32 = 1.0;
 
 impl Rock {
     /// Crust in the column, m.
     pub fn thickness_m(&self) -> f64 {
         self.crust_m as f64 + self.added_m as f64 + self.edifice_m as f64
+    }
+
+    /// Speed of thickening now, m/My: what was noted has faded since.
+    pub fn rate_at(&self, time_myr: f32) -> f32 {
+        self.rate_m_per_myr * libm::expf((self.rated_myr - time_myr) / RATE_MEMORY_MYR)
+    }
+
+    /// Notes a thickening.
+    pub fn note_rate(&mut self, gained_m: f32, time_myr: f32) {
+        self.rate_m_per_myr = self.rate_at(time_myr) + gained_m / RATE_MEMORY_MYR;
+        self.rated_myr = time_myr;
     }
 }
 
@@ -71,6 +87,8 @@ pub struct Plate {
     pub owned: Vec<bool>,
     /// Their rock; default where not owned.
     pub rock: Vec<Rock>,
+    /// First and last + 1 column and row that were ever owned.
+    span: [[usize; 2]; 2],
 }
 
 impl Plate {
@@ -92,16 +110,36 @@ impl Plate {
         let (width, height) = (high[0].max(low[0] + 1) - low[0], high[1].max(low[1] + 1) - low[1]);
         let corner = domain.corner_m + DVec2::new(low[0] as f64, low[1] as f64) * domain.cell_m() - pose.at_m;
         let frame = Frame { corner_m: corner, width, height, cell_m: domain.cell_m() };
-        let mut plate = Self { pose, frame, owned: vec![false; width * height], rock: vec![Rock::default(); width * height] };
+        let (owned, rocks) = (vec![false; width * height], vec![Rock::default(); width * height]);
+        let mut plate = Self { pose, frame, owned, rock: rocks, span: [[width, 0], [height, 0]] };
         for j in 0..height {
             for i in 0..width {
                 if own(low[0] + i, low[1] + j) {
-                    plate.owned[j * width + i] = true;
-                    plate.rock[j * width + i] = rock(low[0] + i, low[1] + j);
+                    plate.take(j * width + i, rock(low[0] + i, low[1] + j));
                 }
             }
         }
         plate
+    }
+
+    /// Makes a cell the plate's own.
+    pub fn take(&mut self, cell: usize, rock: Rock) {
+        self.owned[cell] = true;
+        self.rock[cell] = rock;
+        for (span, at) in self.span.iter_mut().zip([cell % self.frame.width, cell / self.frame.width]) {
+            *span = [span[0].min(at), span[1].max(at + 1)];
+        }
+    }
+
+    /// Gives a cell up.
+    pub fn give(&mut self, cell: usize) -> Rock {
+        self.owned[cell] = false;
+        std::mem::take(&mut self.rock[cell])
+    }
+
+    /// Columns and rows that may hold owned cells.
+    pub fn span(&self) -> [std::ops::Range<usize>; 2] {
+        self.span.map(|[from, to]| from.min(to)..to)
     }
 
     /// The cell under a point of the map, owned or not.
@@ -124,6 +162,7 @@ impl Plate {
         let at = self.frame.to_cells(self.pose.to_body(at_m)) - 0.5;
         let (base, f) = (at.floor(), at - at.floor());
         let mut sum = [0.0f64; 6];
+        let mut rated_myr = f32::NEG_INFINITY;
         let mut weight = 0.0;
         for (dx, dy, w) in
             [(0.0, 0.0, (1.0 - f.x) * (1.0 - f.y)), (1.0, 0.0, f.x * (1.0 - f.y)), (0.0, 1.0, (1.0 - f.x) * f.y), (1.0, 1.0, f.x * f.y)]
@@ -134,10 +173,11 @@ impl Plate {
                 *s += w * v as f64;
             }
             weight += w;
+            rated_myr = rated_myr.max(r.rated_myr);
         }
         (weight > 1e-9).then(|| {
             let [crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr] = sum.map(|s| (s / weight) as f32);
-            Rock { crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr }
+            Rock { crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr, rated_myr }
         })
     }
 
@@ -149,9 +189,10 @@ impl Plate {
 
     /// Corners of a box around its owned cells, map metres.
     pub fn bounds_m(&self) -> [DVec2; 2] {
-        let (w, h) = (self.frame.width as f64, self.frame.height as f64);
-        let corners = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(0.0, h), DVec2::new(w, h)];
-        let corners = corners.map(|c| self.pose.to_map(self.frame.corner_m + c * self.frame.cell_m));
+        let [xs, ys] = self.span().map(|s| [s.start as f64, s.end as f64]);
+        let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| {
+            self.pose.to_map(self.frame.corner_m + DVec2::new(xs[i], ys[j]) * self.frame.cell_m)
+        });
         let fold = |f: fn(DVec2, DVec2) -> DVec2| corners[1..].iter().fold(corners[0], |a, &b| f(a, b));
         [fold(DVec2::min), fold(DVec2::max)]
     }

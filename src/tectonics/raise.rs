@@ -16,7 +16,7 @@ use crate::{
 use super::plate::{Plate, Rock};
 
 /// Draws a widest octave makes in one step; narrower ones make more, since their mosaics are cheaper to overlook.
-const DRAWS: usize = 2;
+const DRAWS: usize = 1;
 /// Thickness below which crust is not stretched further, m.
 const THINNEST_M: f32 = 8_000.0;
 
@@ -75,7 +75,7 @@ pub fn shares(plates: &[Plate], line: &Line, belt: &Belt, key: Key, brush: &mut 
     for octave in 0..belt.octaves {
         let half_width_m = belt.half_width_m / f64::from(1 << octave);
         let first = shares.len();
-        for draw in 0..DRAWS << octave.min(2) {
+        for draw in 0..DRAWS {
             let key = key.with(octave as u64).with(draw as u64);
             draw_once(plates, line, belt, half_width_m, key, brush, &mut shares);
         }

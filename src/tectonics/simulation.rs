@@ -1,6 +1,6 @@
 //! The run of the plates: bodies move, ownership follows, crust is made, lost, thickened and thinned.
 //!
-//! One geologic step is a few engine steps, so many that no plate moves more than about one and a half tectonic cells.
+//! One geologic step is a few engine steps, so many that no two plates close more than about three tectonic cells.
 //! Crust is booked: what spreading, accretion and volcanoes make comes in, what sinks leaves, what collides is moved.
 
 use glam::DVec2;
@@ -23,13 +23,14 @@ use super::{
     stretch::{self, Meeting, Stretch},
 };
 
+/// Cells that two plates may close in one step at twice the plate speed; an exchange takes three.
+const CELLS_PER_STEP: f64 = 3.0;
+/// Height at which a volcano grows no more above the crust that carries it, m.
+const HIGHEST_VOLCANO_M: f32 = 3_500.0;
 /// Crust of gap cells beside a continent, as a share of the crust beside them.
 const STRETCHED: f32 = 0.45;
 /// Continental crust thinner than this breaks: what opens beside it is ocean, m.
 const BREAKING_M: f32 = 17_000.0;
-/// How far the rate of thickening is smoothed back, My.
-const RATE_MEMORY_MYR: f64 = 1.0;
-
 /// Settings of a run in SI units and My.
 #[derive(Clone, Copy, Debug)]
 pub struct Rules {
@@ -115,7 +116,7 @@ impl Simulation {
         let books = Books { start_m3: plates.iter().map(Plate::crust_m3).sum(), ..Books::default() };
         // A plate moves a thirtieth of a unit an engine step at the plate speed; two that meet, twice that.
         let cells_per_step = 2.0 * engine.step_yr() * rules.speed_m_per_yr / domain.cell_m();
-        let engine_steps = ((1.5 / cells_per_step) as u64).max(1);
+        let engine_steps = ((CELLS_PER_STEP / cells_per_step) as u64).max(1);
         let steps = (rules.duration_myr * 1e6 / (engine.step_yr() * engine_steps as f64)).ceil().max(1.0) as u64;
         let grips = vec![Grip::default(); plates.len() * plates.len()];
         Self {
@@ -166,7 +167,6 @@ impl Simulation {
         self.collect(lost);
         self.fill_gaps();
         self.read_stretches(&contacts);
-        self.fade_rates(step_myr);
         self.raise(step_myr);
         self.erupt(step_myr);
         self.step += 1;
@@ -232,11 +232,10 @@ impl Simulation {
             let plate = &mut self.plates[gap.plate];
             let Some(cell) = plate.cell_under(at_m).filter(|&c| !plate.owned[c]) else { continue };
             let rim = plate.owned_under(rim_m).map(|c| plate.rock[c]);
-            plate.owned[cell] = true;
             match rim.filter(|r| r.kind > 0.5 && r.crust_m > BREAKING_M) {
                 Some(rim) => {
                     let crust_m = rim.crust_m * STRETCHED;
-                    plate.rock[cell] = Rock { crust_m, kind: rim.kind, born_myr: rim.born_myr, ..Rock::default() };
+                    plate.take(cell, Rock { crust_m, kind: rim.kind, born_myr: rim.born_myr, ..Rock::default() });
                     let volume = crust_m as f64 * area;
                     match rifts.iter_mut().find(|r| r.0 == gap.plate) {
                         Some(rift) => {
@@ -248,7 +247,7 @@ impl Simulation {
                 }
                 None => {
                     let crust_m = crust::OCEAN_THICKNESS_M as f32;
-                    plate.rock[cell] = Rock { crust_m, born_myr: time, ..Rock::default() };
+                    plate.take(cell, Rock { crust_m, born_myr: time, ..Rock::default() });
                     self.books.made_m3 += crust_m as f64 * area;
                 }
             }
@@ -264,7 +263,7 @@ impl Simulation {
         let line = Line { path_m, lean: DVec2::ZERO, offset_m: 0.0, plates: [plate; 2], work: Work::Thin };
         let key = self.key.named("rift").with(self.step).with(plate as u64);
         let shares = raise::shares(&self.plates, &line, &self.rules.belt, key, &mut Brush::new());
-        let taken = self.apply(&shares, -volume_m3, |rock| &mut rock.crust_m);
+        let taken = self.apply(&shares, -volume_m3, |rock| (&mut rock.crust_m, f32::MAX));
         // What the draws could not find is booked as made: melt that fills the rift.
         self.books.made_m3 += volume_m3 + taken;
     }
@@ -282,42 +281,38 @@ impl Simulation {
         }
     }
 
-    fn fade_rates(&mut self, step_myr: f64) {
-        let keep = libm::exp(-step_myr / RATE_MEMORY_MYR) as f32;
-        self.plates.par_iter_mut().for_each(|plate| plate.rock.iter_mut().for_each(|r| r.rate_m_per_myr *= keep));
-    }
-
     /// Raises ranges along closing borders: collided crust from the pots, accreted crust along subduction zones.
     fn raise(&mut self, step_myr: f64) {
-        let mut jobs: Vec<(Line, f64)> = Vec::new();
+        let mut jobs: Vec<(Line, f64, Option<Pot>)> = Vec::new();
         for pot in std::mem::take(&mut self.pots) {
-            jobs.push((self.collision_line(&pot), pot.volume_m3));
-            self.books.pending_m3 -= pot.volume_m3;
+            jobs.push((self.collision_line(&pot), pot.volume_m3, Some(pot)));
         }
         for s in self.stretches.iter().filter(|s| s.meeting == Meeting::Subduction) {
             let volume = s.closing_m_per_yr * step_myr * 1e6 * s.length_m() * self.rules.accretion_m;
             let path_m = s.ends_m.to_vec();
             let offset_m = 0.8 * self.rules.arc.offset_m;
-            jobs.push((Line { path_m, lean: s.inland, offset_m, plates: [s.over; 2], work: Work::Thicken }, volume));
-            self.books.made_m3 += volume;
+            jobs.push((Line { path_m, lean: s.inland, offset_m, plates: [s.over; 2], work: Work::Thicken }, volume, None));
         }
         let key = self.key.named("raise").with(self.step);
         let shares: Vec<Vec<Share>> = jobs
             .par_iter()
             .enumerate()
-            .map_init(Brush::new, |brush, (i, (line, _))| raise::shares(&self.plates, line, &self.rules.belt, key.with(i as u64), brush))
+            .map_init(Brush::new, |brush, (i, (line, ..))| raise::shares(&self.plates, line, &self.rules.belt, key.with(i as u64), brush))
             .collect();
-        for ((line, volume), shares) in jobs.iter().zip(&shares) {
-            let put = self.apply(shares, *volume, |rock| &mut rock.added_m);
-            self.note_rates(shares, *volume);
-            if shares.is_empty() {
-                // Nowhere to put it: it founders. Booked, so that nothing is lost unseen.
-                self.books.sunk_m3 += volume - put;
-            } else {
-                // Rounding of the f32 state.
-                self.books.made_m3 += put - volume;
+        let thickest = self.rules.belt.thickest_m as f32;
+        for ((_, volume, pot), shares) in jobs.into_iter().zip(&shares) {
+            let put = self.apply(shares, volume, |rock| (&mut rock.added_m, (thickest - rock.crust_m).max(0.0)));
+            self.note_rates(shares, put);
+            match pot {
+                // What found no room waits for the next step.
+                Some(pot) => {
+                    self.books.pending_m3 -= put;
+                    if volume - put > 0.0 {
+                        self.pots.push(Pot { volume_m3: volume - put, ..pot });
+                    }
+                }
+                None => self.books.made_m3 += put,
             }
-            debug_assert!(line.path_m.iter().all(|p| p.is_finite()));
         }
     }
 
@@ -336,14 +331,14 @@ impl Simulation {
         Line { path_m, lean, offset_m: 0.0, plates: [pot.winner, pot.loser], work: Work::Thicken }
     }
 
-    /// Adds `volume_m3` to a part of the rock by shares; returns what the f32 state really took.
-    fn apply(&mut self, shares: &[Share], volume_m3: f64, part: impl Fn(&mut Rock) -> &mut f32) -> f64 {
+    /// Adds `volume_m3` to a part of the rock by shares, up to the part's limit; returns what the f32 state really took.
+    fn apply(&mut self, shares: &[Share], volume_m3: f64, part: impl Fn(&mut Rock) -> (&mut f32, f32)) -> f64 {
         let area = self.domain.cell_m() * self.domain.cell_m();
         let mut got = 0.0;
         for s in shares {
-            let value = part(&mut self.plates[s.plate].rock[s.cell]);
+            let (value, most) = part(&mut self.plates[s.plate].rock[s.cell]);
             let old = *value;
-            *value = (old as f64 + volume_m3 * s.share / area) as f32;
+            *value = ((old as f64 + volume_m3 * s.share / area) as f32).min(most.max(old));
             got += *value as f64 - old as f64;
         }
         got * area
@@ -351,9 +346,10 @@ impl Simulation {
 
     fn note_rates(&mut self, shares: &[Share], volume_m3: f64) {
         let area = self.domain.cell_m() * self.domain.cell_m();
+        let time = self.time_myr as f32;
         for s in shares {
             let gained = volume_m3 * s.share / area;
-            self.plates[s.plate].rock[s.cell].rate_m_per_myr += (gained / RATE_MEMORY_MYR) as f32;
+            self.plates[s.plate].rock[s.cell].note_rate(gained as f32, time);
         }
     }
 
@@ -374,7 +370,7 @@ impl Simulation {
             .collect();
         let area = self.domain.cell_m() * self.domain.cell_m();
         for gains in gains {
-            self.books.made_m3 += self.apply(&gains, area, |rock| &mut rock.edifice_m);
+            self.books.made_m3 += self.apply(&gains, area, |rock| (&mut rock.edifice_m, HIGHEST_VOLCANO_M));
         }
     }
 }

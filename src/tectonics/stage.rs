@@ -11,9 +11,9 @@ use crate::{
 
 use super::{
     arc::Arc,
-    domain::{Domain, SIDE_UNITS},
+    domain::Domain,
     engine::{Drive, Engine, Settings, Style},
-    initial,
+    initial::{self, Continents},
     mantle::Mantle,
     paint,
     params::{PlateStyle, PlatesParams},
@@ -108,7 +108,7 @@ impl Process for Stage {
             }
         }
         if let Some(share) = self.params.land_share {
-            world.sea_level_m = sea_level_for(&world.height(), share);
+            world.sea_level_m = world.height().level_above(share);
         }
         Ok(())
     }
@@ -211,9 +211,9 @@ impl Geologic {
             }
         };
         let painted = params.continents.as_deref().map(|path| paint::light(&domain, &warp, path)).transpose()?;
-        let mut kind = initial::continents(&domain, params, painted.as_ref(), key);
-        let drives = drives(params, &domain, &warp, &owners, outlines.len(), &mut kind)?;
-        let rocks = initial::rocks(&domain, params, &kind, key);
+        let mut continents = initial::continents(&domain, params, painted.as_ref(), key);
+        let drives = drives(params, &domain, &warp, &owners, outlines.len(), &mut continents)?;
+        let rocks = initial::rocks(&domain, params, &continents, key);
         let mantle = Mantle::new(params.closing, key.named("mantle"));
         let engine = Engine::new(domain, &outlines, drives, mantle, settings(params, Style::Overriding))
             .ok_or_else(|| ProcessError::Unfit("a plate is too thin to move; draw it broader".to_owned()))?;
@@ -246,7 +246,9 @@ impl Geologic {
         let run = &self.simulation;
         let surface = Surface::of(run, params);
         context.check()?;
-        for (layer, field) in surface.read(world.grid, &self.warp, params, context.key.named("detail")) {
+        let map_m = run.domain.map_m;
+        let sea_m = params.land_share.map_or(world.sea_level_m, |share| surface.sea_level_for(map_m, &self.warp, share));
+        for (layer, field) in surface.read(world.grid, &self.warp, params, sea_m, context.key.named("detail")) {
             match layer {
                 Layer::Bedrock => placement.put(base, &field, world, context)?,
                 other => world.set_layer(other, field),
@@ -287,7 +289,7 @@ fn drives(
     warp: &Warp,
     owners: &[u8],
     count: usize,
-    kind: &mut Field<f32>,
+    continents: &mut Continents,
 ) -> Result<Vec<Drive>, ProcessError> {
     let mut drives = vec![Drive::Mantle; count];
     for (index, entry) in params.plate.iter().enumerate() {
@@ -305,7 +307,7 @@ fn drives(
         let heading = entry.heading_deg.to_radians();
         let direction = DVec2::new(libm::sin(heading), -libm::cos(heading));
         drives[plate as usize] = Drive::Own(direction * (entry.speed_mm_per_yr / params.speed_mm_per_yr));
-        initial::override_crust(kind, owners, plate, entry.crust);
+        initial::override_crust(continents, owners, plate, entry.crust);
     }
     Ok(drives)
 }
@@ -322,7 +324,6 @@ fn thesis(params: &PlatesParams, map: Grid, key: Key) -> Result<Thesis, ProcessE
         .ok_or_else(|| ProcessError::Unfit("a plate is too thin to move; ask for fewer plates".to_owned()))?;
     let inside = |p: DVec2| outlines.iter().position(|o| partition::edges(o).all(|(a, b)| (b - a).perp_dot(p - a) >= 0.0));
     let ids = Field::from_fn(map, |x, y| inside(domain.to_engine(map.center_m(x, y).into())).map_or(u8::MAX, |p| p as u8));
-    debug_assert!(SIDE_UNITS > 0.0);
     Ok(Thesis::new(engine, domain, ids.data, map, params, key))
 }
 
@@ -339,13 +340,4 @@ fn thesis_table(run: &Thesis) -> Table {
         .number("y_km", "km", rows.iter().map(|r| r.0.y * 1e-3).collect())
         .number("speed_mm_per_yr", "mm/yr", rows.iter().map(|r| r.1.speed_mm_per_yr).collect())
         .number("heading_deg", "deg", rows.iter().map(|r| r.1.heading_deg).collect())
-}
-
-/// The sea level that leaves this share of the map dry, m.
-fn sea_level_for(height: &Field<f32>, land_share: f64) -> f64 {
-    let mut sorted = height.data.clone();
-    let below = ((1.0 - land_share) * sorted.len() as f64).round() as usize;
-    let at = below.min(sorted.len() - 1);
-    let (_, &mut value, _) = sorted.select_nth_unstable_by(at, f32::total_cmp);
-    if below == sorted.len() { value as f64 + 1.0 } else { value as f64 }
 }

@@ -87,7 +87,9 @@ impl Surface {
             age: Field::from_fn(grid, |x, y| time - rock[grid.index(x, y)].born_myr),
             thickness: part(|r| (r.thickness_m() * 1e-3) as f32),
             // Thickening shows as uplift by Airy's factor; m/My are mm/yr times a thousand.
-            uplift: part(|r| r.rate_m_per_myr * ((1.0 - crust::CONTINENTAL / crust::MANTLE) * 1e-3) as f32),
+            uplift: Field::from_fn(grid, |x, y| {
+                rock[grid.index(x, y)].rate_at(time) * ((1.0 - crust::CONTINENTAL / crust::MANTLE) * 1e-3) as f32
+            }),
             boundary: boundary_layer(grid, &borders),
             height,
             plate,
@@ -96,8 +98,8 @@ impl Surface {
     }
 
     /// Reads the surface onto a map: one field a layer.
-    pub fn read(&self, map: Grid, warp: &Warp, params: &PlatesParams, key: Key) -> Vec<(Layer, Field<f32>)> {
-        let detail = Detail::new(map, params, key);
+    pub fn read(&self, map: Grid, warp: &Warp, params: &PlatesParams, sea_m: f64, key: Key) -> Vec<(Layer, Field<f32>)> {
+        let detail = Detail::new(map, params, sea_m, key);
         let mut readings = vec![Reading::default(); map.cells()];
         for_each_row(&mut readings, map.width, |y, row| {
             for (x, reading) in row.iter_mut().enumerate() {
@@ -117,6 +119,17 @@ impl Surface {
             .into_par_iter()
             .map(|(layer, part)| (layer, Field { grid: map, data: readings.iter().map(part).collect() }))
             .collect()
+    }
+
+    /// The sea level that leaves this share of the map dry before detail is added, m; the same for every grid.
+    pub fn sea_level_for(&self, map_m: DVec2, warp: &Warp, land_share: f64) -> f64 {
+        const PROBES: usize = 192;
+        let probes = Grid::new(PROBES, PROBES, 1.0, crate::grid::Edges::Closed);
+        let heights = Field::from_fn(probes, |x, y| {
+            let at_m = DVec2::from(probes.center_m(x, y)) * map_m;
+            linear(&self.height, (warp.read_at(at_m) - self.corner_m).into()) as f32
+        });
+        heights.level_above(land_share)
     }
 
     fn read_cell(&self, at_m: DVec2, warp: &Warp, detail: &Detail) -> Reading {
@@ -280,19 +293,21 @@ struct Detail {
     gullies: Gullies,
     gully_key: Key,
     cell_m: f64,
+    sea_m: f64,
     ruggedness: f64,
     border_m: f64,
 }
 
 impl Detail {
-    fn new(map: Grid, params: &PlatesParams, key: Key) -> Self {
+    fn new(map: Grid, params: &PlatesParams, sea_m: f64, key: Key) -> Self {
         let belt_m = params.belt_km * 1e3;
         Self {
-            plains: Fbm::new(2.0 * belt_m, 0.75).octaves(key.named("plains"), map.cell_m),
+            plains: Fbm::new(2.0 * belt_m, 0.6).octaves(key.named("plains"), map.cell_m),
             ridges: Fbm::new(0.9 * belt_m, 0.9).octaves(key.named("ridges"), map.cell_m),
-            gullies: Gullies { wavelength_m: 0.4 * belt_m, octaves: 6, relief: 0.055, half_slope: 0.06 },
+            gullies: Gullies { wavelength_m: 0.3 * belt_m, octaves: 6, relief: 0.06, half_slope: 0.06 },
             gully_key: key.named("gullies"),
             cell_m: map.cell_m,
+            sea_m,
             ruggedness: params.ruggedness,
             border_m: map.cell_m.max(params.belt_km * 1e3 / 12.0),
         }
@@ -301,18 +316,29 @@ impl Detail {
     fn height(&self, at_m: DVec2, base: f64, slope: DVec2, kind: f64, mountain: f64) -> f64 {
         let at = at_m.into();
         // Low ground near the sea is smooth, uplands are rolling, the deep floor has its hills.
-        let upland = (base / 1500.0).clamp(0.0, 1.0);
-        let plain = self.plains.value(at) * (70.0 + 110.0 * upland + 60.0 * (1.0 - kind).clamp(0.0, 1.0));
-        let rough = (mountain.max(0.0) / 2500.0).min(1.6) * self.ruggedness;
-        let mut height = plain;
+        let above = base - self.sea_m;
+        let upland = smoothstep(above / 1200.0);
+        let floor = smoothstep(-above / 3000.0) * (1.0 - kind).clamp(0.0, 1.0);
+        let (plain, plain_slope) = self.plains.gradient(at);
+        let rolling = 55.0 + 130.0 * upland + 80.0 * floor;
+        let mut height = plain * rolling;
+        let rough = (mountain.max(0.0) / 2500.0).min(1.4) * self.ruggedness;
         if rough > 0.02 {
             // Ridged sums lie between 0 and 1 with a mean near 0.7.
-            height += rough * 1300.0 * (self.ridges.ridged(at) - 0.7);
+            height += rough * 1100.0 * (self.ridges.ridged(at) - 0.7);
         }
-        if base > -500.0 && self.ruggedness > 0.0 {
-            let share = ((base + 500.0) / 800.0).clamp(0.0, 1.0) * self.ruggedness;
-            height += share * self.gullies.value(self.gully_key, at, slope.into(), self.cell_m);
+        // Valleys are cut above the sea, the deeper the higher the ground.
+        let cut = smoothstep((above + 100.0) / 1500.0) * self.ruggedness;
+        if cut > 0.01 {
+            // The rolling ground turns the valleys, so that they do not run in ranks.
+            let slope = slope + DVec2::from(plain_slope) * (0.5 * rolling);
+            height += cut * self.gullies.value(self.gully_key, at, slope.into(), self.cell_m);
         }
         height
     }
+}
+
+fn smoothstep(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
 }

@@ -8,11 +8,11 @@ use glam::DVec2;
 use crate::noise::{Basis, Fbm, Key, Octaves};
 
 /// Longest bend as a share of the map's longer side.
-const WAVELENGTH: f64 = 0.42;
+const WAVELENGTH: f64 = 0.6;
 /// Octaves of the bend: from a third of the map to its hundredth.
-const OCTAVES: f64 = 5.0;
+const OCTAVES: f64 = 6.0;
 /// Smallest area factor left.
-const LEAST_DETERMINANT: f64 = 0.3;
+const LEAST_DETERMINANT: f64 = 0.15;
 /// Points a side at which folding is looked for: a quarter of the shortest bend.
 const PROBES: usize = 160;
 
@@ -27,7 +27,7 @@ impl Warp {
     /// Bends by about `bend` of the map's longer side, less where that would fold.
     pub fn new(map_m: DVec2, bend: f64, key: Key) -> Self {
         let side = map_m.max_element();
-        let fbm = Fbm { octaves: Some(OCTAVES), basis: Basis::Gradient, ..Fbm::new(WAVELENGTH * side, 1.1) };
+        let fbm = Fbm { octaves: Some(OCTAVES), basis: Basis::Gradient, ..Fbm::new(WAVELENGTH * side, 1.15) };
         let parts = [fbm.octaves(key.named("east"), 0.0), fbm.octaves(key.named("south"), 0.0)];
         let mut warp = Self { parts, amplitude_m: bend * side };
         let slopes: Vec<[DVec2; 2]> = (0..PROBES * PROBES)
