@@ -8,7 +8,6 @@ mod lattice;
 mod multifractal;
 
 pub use fbm::{Fbm, Octaves, Sampler};
-pub use fbm::{Fbm, Octaves};
 pub use gully::Gullies;
 pub use hash::{Key, Stream};
 pub use lattice::{Basis, gradient, simplex, value};
