@@ -12,4 +12,6 @@ pub mod rmp;
 pub mod tectonics;
 pub mod terrain;
 pub mod relief;
+pub mod recipe;
+pub mod timeline;
 pub mod world;

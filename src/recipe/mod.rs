@@ -1,0 +1,29 @@
+//! Recipes: TOML in, a validated [`Plan`] out; presets; what every parameter is; the JSON schema.
+//!
+//! A recipe is read into a tree that knows its lines, flags are laid over the tree, and the tree is held against the
+//! schema of each stage. Only what passed reaches serde. Whoever holds a [`Plan`] can trust it. This room runs nothing.
+
+mod error;
+mod near;
+mod overrides;
+mod params;
+mod plan;
+mod presets;
+#[cfg(test)]
+mod probe;
+mod schema;
+mod source;
+mod stages;
+#[cfg(test)]
+mod tests;
+mod tree;
+mod world;
+
+pub use error::{Problem, RecipeError};
+pub use overrides::Overrides;
+pub use params::{Parameter, json_schema, markdown, parameters, world_parameters};
+pub use plan::{Plan, Stage};
+pub use presets::{Preset, all as presets, find as find_preset};
+pub use source::Source;
+pub use stages::{Setting, StageKind, all as stage_kinds, find as find_stage};
+pub use world::{Size, WorldParams};
