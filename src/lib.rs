@@ -3,8 +3,10 @@
 #![warn(missing_docs)]
 
 pub mod crust;
+pub mod cli;
 pub mod export;
 pub mod grid;
+pub mod job;
 pub mod measure;
 pub mod noise;
 pub mod process;
@@ -13,5 +15,6 @@ pub mod tectonics;
 pub mod terrain;
 pub mod relief;
 pub mod recipe;
+pub mod relief;
 pub mod timeline;
 pub mod world;

@@ -1,3 +1,5 @@
 //! The `upthrust` command.
 
-fn main() {}
+fn main() -> std::process::ExitCode {
+    upthrust::cli::main()
+}

@@ -20,6 +20,7 @@ mod tree;
 mod world;
 
 pub use error::{Problem, RecipeError};
+pub(crate) use near::nearest;
 pub use overrides::Overrides;
 pub use params::{Parameter, json_schema, markdown, parameters, world_parameters};
 pub use plan::{Plan, Stage};

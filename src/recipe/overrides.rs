@@ -2,7 +2,7 @@
 
 use super::{
     error::{Problem, RecipeError},
-    tree::{Node, Place, Table, Value, parse_flag_value},
+    tree::{Entry, Node, Place, Table, Value, parse_flag_value},
 };
 
 /// Changes asked for on the command line.
@@ -90,7 +90,10 @@ fn put(table: &mut Table, keys: &[&str], node: Node, place: &Place) -> Result<()
 /// The table at a key, made if it is not there.
 fn section<'a>(table: &'a mut Table, key: &str, place: &Place) -> Result<&'a mut Table, RecipeError> {
     if table.get(key).is_none() {
-        table.set(key, Node { place: place.clone(), value: Value::Table(Table::default()) });
+        let node = Node { place: place.clone(), value: Value::Table(Table::default()) };
+        // A new [world] stands where a reader looks for it: before the stages.
+        let before = table.entries.iter().position(|entry| entry.key == "stage").unwrap_or(table.entries.len());
+        table.entries.insert(before, Entry { key: key.to_owned(), place: place.clone(), node });
     }
     match table.get_mut(key).map(|node| &mut node.value) {
         Some(Value::Table(inner)) => Ok(inner),

@@ -25,6 +25,8 @@ use super::{
 pub struct Plan {
     /// Short name, for folders.
     pub name: String,
+    /// What finds the recipe again: the preset's name or the file's path.
+    pub asked: String,
     /// Name for people.
     pub title: String,
     /// One line about it.
@@ -168,6 +170,7 @@ impl Plan {
         };
         Ok(Self {
             name: slug(&source.name),
+            asked: source.file.clone(),
             title: world.name.clone().or(text("name")).unwrap_or_else(|| source.name.clone()),
             description: text("description").unwrap_or_default(),
             world,

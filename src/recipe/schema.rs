@@ -251,6 +251,9 @@ pub(crate) fn choices(schema: &Json) -> Vec<&str> {
 
 /// What a schema asks for, in words.
 pub(crate) fn wanted(schema: &Json) -> String {
+    if let Some(own) = schema["x-wanted"].as_str() {
+        return own.to_owned();
+    }
     let words = choices(schema);
     if let [only] = words.as_slice() {
         return format!("'{only}'");
@@ -277,12 +280,17 @@ pub(crate) fn wanted(schema: &Json) -> String {
 
 fn wanted_list(schema: &Json) -> String {
     let items = &schema["items"];
-    let item = if items.is_object() { format!(", each {}", wanted(items)) } else { String::new() };
+    let item = match wanted(items).as_str() {
+        "a value" => String::new(),
+        "a number" => " numbers".to_owned(),
+        item => format!(", each {item}"),
+    };
     match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
         (Some(a), Some(b)) if a == b => format!("a list of {a}{item}"),
         (Some(a), Some(b)) => format!("a list of {a} to {b}{item}"),
         (Some(a), None) => format!("a list of at least {a}{item}"),
         (None, Some(b)) => format!("a list of at most {b}{item}"),
+        (None, None) if item == " numbers" => "a list of numbers".to_owned(),
         (None, None) => format!("a list{item}"),
     }
 }

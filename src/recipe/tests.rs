@@ -31,7 +31,7 @@ fn every_mistake_has_its_line() {
         ("[world]\nsiez = 64\n", "t.toml:2: unknown key 'siez' in [world] (did you mean 'size'?)"),
         (
             "[world]\nsize = [512, 4]\n",
-            "t.toml:2: 'size' in [world] must be a whole number between 16 and 16384 cells, or a list of 2, each a whole number between 16 and 16384 cells, not a list of 2",
+            "t.toml:2: 'size' in [world] must be a whole number of cells between 16 and 16384, or two such: [1024, 512], not a list of 2",
         ),
         (
             "[world]\nseed = -1\n",
@@ -79,7 +79,7 @@ fn every_mistake_has_its_line() {
         ("count = 2.5", "'count' in stage 'probe' must be a whole number between 1 and 9, not the number 2.5"),
         ("style = \"odd\"", "'style' in stage 'probe' must be one of plain, fancy, not 'odd'"),
         ("maybe = 4", "'maybe' in stage 'probe' must be one of plain, fancy, not the number 4"),
-        ("at_km = [1, 2, 3]", "'at_km' in stage 'probe' must be a list of 2, each a number, not a list of 3"),
+        ("at_km = [1, 2, 3]", "'at_km' in stage 'probe' must be a list of 2 numbers, not a list of 3"),
         ("at_km = [1, \"x\"]", "'at_km[2]' in stage 'probe' must be a number, not the text 'x'"),
         (
             "lump = [{ at_km = [1, 2], height_m = -1 }]",
@@ -148,7 +148,7 @@ fn flags_reach_stages_and_errors_name_them() {
         ("count=3", "--set count: write STAGE.PARAM=VALUE, such as fbm.height_m=800 or world.extent_km=200"),
         (
             "world.size=3",
-            "--set world.size: 'size' in [world] must be a whole number between 16 and 16384 cells, or a list of 2, each a whole number between 16 and 16384 cells, not the number 3",
+            "--set world.size: 'size' in [world] must be a whole number of cells between 16 and 16384, or two such: [1024, 512], not the number 3",
         ),
     ];
     for (set, message) in cases {

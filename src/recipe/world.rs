@@ -72,6 +72,7 @@ fn size_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     schemars::json_schema!({
         "anyOf": [side, { "type": "array", "items": side, "minItems": 2, "maxItems": 2 }],
         "x-unit": "cells",
+        "x-wanted": format!("a whole number of cells between {MIN_SIDE} and {MAX_SIDE}, or two such: [1024, 512]"),
         "x-effect": "a sharper picture of the same land",
     })
 }

@@ -1,0 +1,180 @@
+//! The arguments as they are typed, before anything is believed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, error::ErrorKind};
+
+use super::{CliError, output};
+
+#[derive(Debug, Parser)]
+#[command(name = "upthrust", version, about = "Grows a world from its plates", disable_help_subcommand = true)]
+struct Raw {
+    #[command(subcommand)]
+    command: RawCommand,
+}
+
+/// A command as typed.
+#[derive(Debug, Subcommand)]
+pub(crate) enum RawCommand {
+    /// Run a recipe (preset name or file) into a folder
+    Grow(Box<RawGrow>),
+    /// List the presets, or print one
+    Presets {
+        /// The preset to print
+        name: Option<String>,
+    },
+    /// Every parameter: unit, range, default, what raising it does
+    Params(RawParams),
+    /// Numbers about a world
+    Inspect(RawInspect),
+    /// A picture of a world
+    Render(RawRender),
+    /// The desktop application
+    #[command(hide = true)]
+    App {
+        #[arg(hide = true, num_args = 0..)]
+        rest: Vec<String>,
+    },
+}
+
+/// `grow` as typed.
+#[derive(Debug, Default, Args)]
+pub(crate) struct RawGrow {
+    /// A preset's name, or a recipe file
+    #[arg(default_value = super::command::DEFAULT_RECIPE)]
+    pub recipe: String,
+    /// The folder to make [default: a new one under worlds/]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Another seed than the recipe's
+    #[arg(long, value_name = "N|random", allow_hyphen_values = true)]
+    pub seed: Option<String>,
+    /// Cells a side: sharper, the same land
+    #[arg(long, value_name = "N|WxH", allow_hyphen_values = true)]
+    pub size: Option<String>,
+    /// Set a parameter; may be given several times
+    #[arg(long, value_name = "STAGE.PARAM=VALUE", allow_hyphen_values = true)]
+    pub set: Vec<String>,
+    /// End after this stage
+    #[arg(long, value_name = "STAGE")]
+    pub until: Option<String>,
+    /// Threads to use; the world is the same for any number [default: one a core]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub threads: Option<String>,
+    /// Replace the world that --out names
+    #[arg(long)]
+    pub force: bool,
+    /// Print the folder, nothing else
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Print the manifest as JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Seeds of a contact sheet, both ends included
+    #[arg(long, value_name = "A..B", allow_hyphen_values = true)]
+    pub seeds: Option<String>,
+    /// Draw the seeds on one contact sheet (PNG) instead of growing a folder
+    #[arg(long, value_name = "FILE")]
+    pub sheet: Option<PathBuf>,
+}
+
+/// `params` as typed.
+#[derive(Debug, Args)]
+pub(crate) struct RawParams {
+    /// A stage's kind, or 'world'
+    pub stage: Option<String>,
+    /// Print the JSON schema of a recipe, for editors
+    #[arg(long)]
+    pub schema: bool,
+    /// Print the page of all parameters
+    #[arg(long, hide = true)]
+    pub markdown: bool,
+}
+
+/// `inspect` as typed.
+#[derive(Debug, Args)]
+pub(crate) struct RawInspect {
+    /// The world's folder, or the store in it
+    pub world: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write the numbers to a file as well (.json for JSON, else text)
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
+}
+
+/// `render` as typed.
+#[derive(Debug, Args)]
+pub(crate) struct RawRender {
+    /// The world's folder, or the store in it
+    pub world: PathBuf,
+    /// The picture (PNG)
+    pub file: PathBuf,
+    /// What to draw: relief, or a layer
+    #[arg(long, value_name = "relief|LAYER", default_value = "relief")]
+    pub view: String,
+    /// Plate borders and motions over it
+    #[arg(long)]
+    pub overlay: bool,
+}
+
+/// The command of this process; `None` if help or the version was asked for and printed.
+pub(crate) fn parse() -> Result<Option<RawCommand>, CliError> {
+    match Raw::try_parse() {
+        Ok(raw) => Ok(Some(raw.command)),
+        Err(error) => match error.kind() {
+            ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => match error.print() {
+                Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(CliError::System(e.to_string())),
+                _ => Ok(None),
+            },
+            ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+                output::say(&error.render().to_string());
+                Err(CliError::Request("name a command, such as 'upthrust grow'".into()))
+            }
+            _ => Err(CliError::Request(one_line(&error))),
+        },
+    }
+}
+
+/// clap's message and its tip, without the usage.
+fn one_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let text = text.strip_prefix("error: ").unwrap_or(&text);
+    let parts = text.split("\n\n").filter(|part| !part.trim_start().starts_with("Usage:"));
+    let parts: Vec<String> = parts
+        .filter(|part| !part.starts_with("For more information"))
+        .map(|part| part.split_whitespace().collect::<Vec<_>>().join(" "))
+        .filter(|part| !part.is_empty())
+        .collect();
+    match parts.as_slice() {
+        [] => "this command cannot be understood; see 'upthrust --help'".to_owned(),
+        [only] => format!("{only}; see 'upthrust --help'"),
+        [first, rest @ ..] => format!("{first} ({})", rest.join("; ").replace("tip: ", "")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_grammar_is_sound() {
+        Raw::command().debug_assert();
+    }
+
+    #[test]
+    fn messages_are_one_line() {
+        let said = |args: &[&str]| one_line(&Raw::try_parse_from(args).unwrap_err());
+        assert_eq!(
+            said(&["upthrust", "grow", "--sizee", "3"]),
+            "unexpected argument '--sizee' found (a similar argument exists: '--size')"
+        );
+        assert_eq!(
+            said(&["upthrust", "render", "w"]),
+            "the following required arguments were not provided: <FILE>; see 'upthrust --help'"
+        );
+        assert!(!said(&["upthrust", "growl"]).contains('\n'));
+    }
+}

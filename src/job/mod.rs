@@ -1,0 +1,96 @@
+//! From a recipe to files: runs a timeline and writes what it grew, whole or not at all.
+//!
+//! Used by the command line and the application alike, on whatever thread they like. It prints nothing and reads no
+//! arguments.
+
+mod estimate;
+mod folder;
+mod grow;
+mod manifest;
+mod picture;
+mod sheet;
+
+pub use estimate::{Estimate, estimate};
+pub use grow::{Grown, Request, grow};
+pub use manifest::Manifest;
+pub use picture::{Picture, open_world, render};
+pub use sheet::{MOST as SHEET_MOST, SheetRequest, sheet};
+
+use std::path::PathBuf;
+
+use crate::{
+    export::ExportError, recipe::RecipeError, relief::ReliefError, timeline::Moment, timeline::TimelineError,
+    world::store::StoreError,
+};
+
+/// The store's name in a world's folder.
+pub const STORE: &str = "world.zarr";
+/// The heightmap's name in a world's folder.
+pub const HEIGHT: &str = "height.png";
+/// The map's name in a world's folder.
+pub const RELIEF: &str = "relief.png";
+/// The manifest's name in a world's folder.
+pub const MANIFEST: &str = "manifest.json";
+
+/// What a job tells while it works.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// A step is done.
+    Step(&'a Moment<'a>),
+    /// One of several worlds is done.
+    World {
+        /// Worlds done.
+        done: usize,
+        /// Worlds asked for.
+        of: usize,
+    },
+    /// A file is being written.
+    Writing(&'a str),
+}
+
+/// Why a job ended early.
+#[derive(Debug, thiserror::Error)]
+pub enum JobError {
+    /// The recipe is wrong.
+    #[error(transparent)]
+    Recipe(#[from] RecipeError),
+    /// The request cannot be done as it was made; nothing was begun.
+    #[error("{0}")]
+    Refused(String),
+    /// The run stopped.
+    #[error(transparent)]
+    Timeline(#[from] TimelineError),
+    /// The world could not be stored or read.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The heightmap could not be written.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// The map could not be drawn.
+    #[error(transparent)]
+    Relief(#[from] ReliefError),
+    /// A file could not be written.
+    #[error("{path}: {cause}")]
+    Disk {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+}
+
+impl JobError {
+    /// Whether the user stopped it.
+    pub fn cancelled(&self) -> bool {
+        matches!(self, JobError::Timeline(TimelineError::Cancelled))
+    }
+
+    /// Whether the request was wrong, rather than the run.
+    pub fn refused(&self) -> bool {
+        match self {
+            JobError::Recipe(_) | JobError::Refused(_) => true,
+            JobError::Store(error) => matches!(error, StoreError::Absent(_)),
+            _ => false,
+        }
+    }
+}
