@@ -16,5 +16,7 @@ pub mod terrain;
 pub mod relief;
 pub mod recipe;
 pub mod relief;
+pub mod rmp;
+pub mod terrain;
 pub mod timeline;
 pub mod world;

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     grid::Field,
-    process::{Context, Placement, Process, ProcessError, State, Step},
+    process::{Context, Process, ProcessError, State, Step},
+    terrain::Shape,
     world::{Layer, Matter, World},
 };
 
@@ -80,37 +81,11 @@ impl Default for ProbeParams {
     }
 }
 
-impl ProbeParams {
-    /// The process.
-    pub fn process(self, placement: Placement) -> Box<dyn Process> {
-        Box::new(Probe { params: self, placement })
-    }
-}
-
-struct Probe {
-    params: ProbeParams,
-    placement: Placement,
-}
-
-impl Process for Probe {
-    fn writes(&self) -> &'static [Layer] {
-        &[Layer::Bedrock]
-    }
-
-    fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
-        let base = world.layer_mut(Layer::Bedrock).clone();
+impl Shape for ProbeParams {
+    fn heights(&self, ground: &Field<f32>, context: &Context) -> Result<Field<f32>, ProcessError> {
         // The random part shows which key the stage was given.
-        let height = self.params.height_m + context.key.stream().unit();
-        self.placement.put(&base, &Field::filled(world.grid, height as f32), world, context)?;
-        Ok(Step::WHOLE)
-    }
-
-    fn save(&self) -> State {
-        State::default()
-    }
-
-    fn restore(&mut self, _state: State, _context: &Context) -> Result<(), ProcessError> {
-        Ok(())
+        let height = self.height_m + context.key.stream().unit();
+        Ok(Field::filled(ground.grid, height as f32))
     }
 }
 

@@ -6,7 +6,10 @@ use schemars::JsonSchema;
 use serde::{Serialize, de::DeserializeOwned};
 use serde_json::Value as Json;
 
-use crate::process::{Placement, Process, ProcessError};
+use crate::{
+    process::{Placement, Process, ProcessError},
+    terrain::Shape,
+};
 
 use super::schema;
 
@@ -51,17 +54,12 @@ impl StageKind {
     }
 }
 
-/// A row of the registry: a stage whose heights join by `blend` and `mask`.
-fn ground<P>(
-    kind: &'static str,
-    title: &'static str,
-    about: &'static str,
-    make: fn(P, Placement) -> Box<dyn Process>,
-) -> StageKind
+/// A row of the registry: a base shape, whose heights join by `blend` and `mask`.
+fn ground<P>(kind: &'static str, title: &'static str, about: &'static str) -> StageKind
 where
-    P: Default + Serialize + DeserializeOwned + JsonSchema + 'static,
+    P: Shape + Default + Serialize + DeserializeOwned + JsonSchema,
 {
-    let build = move |params: P, setting: Setting| Ok(make(params, setting.placement));
+    let build = |params: P, setting: Setting| Ok(params.process(setting.placement));
     StageKind { blends: true, ..row(kind, title, about, build) }
 }
 
@@ -83,10 +81,21 @@ where
     StageKind { kind, title, about, blends: false, schema: schema::of::<P>(), defaults, build: Box::new(build) }
 }
 
+#[rustfmt::skip]
 fn table() -> Vec<StageKind> {
+    use crate::terrain as t;
     vec![
+        ground::<t::FbmParams>("fbm", "Fractal ground", "Fractional Brownian motion: hills whose roughness is a number."),
+        ground::<t::MultifractalParams>("multifractal", "Multifractal ground", "Smooth valleys below rough crests."),
+        ground::<t::WarpParams>("warp", "Warp", "Bends the ground that is there, as if it were rubber."),
+        ground::<t::TerraceParams>("terrace", "Terraces", "Cuts the ground that is there into benches."),
+        ground::<t::DiamondSquareParams>("diamond_square", "Diamond-square", "Midpoint displacement, finer and finer."),
+        ground::<t::FaultParams>("fault", "Faults", "Random lines, each raising one side and lowering the other."),
+        ground::<t::RmpPeakParams>("rmp_peak", "Peak", "A mountain of many random Voronoi cells about a point."),
+        ground::<t::RmpRidgeParams>("rmp_ridge", "Ridge", "A range of many random Voronoi cells along a drawn line."),
+        ground::<t::RmpGraphParams>("rmp_graph", "Line-cut massif", "A massif of faces between random lines."),
         #[cfg(test)]
-        ground("probe", "Probe", "A level ground for tests.", super::probe::ProbeParams::process),
+        ground::<super::probe::ProbeParams>("probe", "Probe", "A level ground for tests."),
         #[cfg(test)]
         row("drip", "Drip", "Adds a metre a step, for tests.", super::probe::DripParams::process),
     ]
