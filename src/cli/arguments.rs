@@ -144,6 +144,8 @@ fn one_line(error: &clap::Error) -> String {
     let parts = text.split("\n\n").filter(|part| !part.trim_start().starts_with("Usage:"));
     let parts: Vec<String> = parts
         .filter(|part| !part.starts_with("For more information"))
+        // Nobody who mistypes a flag means it as a value.
+        .filter(|part| !part.contains("as a value, use '-- "))
         .map(|part| part.split_whitespace().collect::<Vec<_>>().join(" "))
         .filter(|part| !part.is_empty())
         .collect();

@@ -72,7 +72,11 @@ fn table(title: &str, rows: &[Parameter], output: &mut Output) -> Result<(), Cli
     output.line(&line(head.map(str::to_owned)))?;
     for row in rows {
         output.line(&line(cells(row)))?;
-        let effect = if row.effect.is_empty() { String::new() } else { format!(" Higher: {}.", row.effect) };
+        let effect = match (row.effect.as_str(), row.number) {
+            ("", _) => String::new(),
+            (effect, true) => format!(" Higher: {effect}."),
+            (effect, false) => format!(" Effect: {effect}."),
+        };
         output.line(&format!("    {}{effect}", row.about))?;
     }
     Ok(())

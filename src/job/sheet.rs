@@ -63,8 +63,10 @@ pub fn sheet(
             Ok((plan.world.seed.to_string(), picture))
         })
         .collect::<Result<Vec<_>, JobError>>()?;
-    let columns = (pictures.len() as f64 * 1.5).sqrt().ceil() as usize;
-    let sheet = relief::contact_sheet(&pictures, columns.max(1));
+    // Half as wide again as high, rows filled alike.
+    let widest = (pictures.len() as f64 * 1.5).sqrt().ceil() as usize;
+    let rows = pictures.len().div_ceil(widest.max(1));
+    let sheet = relief::contact_sheet(&pictures, pictures.len().div_ceil(rows.max(1)).max(1));
     write_png(&sheet, &request.file)?;
     Ok(request.file.clone())
 }

@@ -25,8 +25,10 @@ pub struct Parameter {
     pub default: String,
     /// What it is, in a sentence.
     pub about: String,
-    /// What raising it does; empty where that means nothing.
+    /// What raising or choosing it does; empty where that means nothing.
     pub effect: String,
+    /// Whether it is a number, so that it can be raised.
+    pub number: bool,
 }
 
 /// The parameters of `[world]`.
@@ -55,6 +57,7 @@ fn rows(schema: &Json, defaults: &Json, prefix: &str) -> Vec<Parameter> {
             default: show(default),
             about: sentence(property["description"].as_str().unwrap_or_default()),
             effect: property["x-effect"].as_str().unwrap_or_default().to_owned(),
+            number: schema::types(property).iter().any(|name| matches!(*name, "number" | "integer")),
             name: name.clone(),
         });
         if property["items"]["properties"].is_object() {
@@ -144,7 +147,7 @@ fn markdown_table(out: &mut String, rows: &[Parameter]) {
         out.push_str("It has no parameters of its own.\n");
         return;
     }
-    out.push_str("| key | unit | allowed | default | what it is | raising it |\n|---|---|---|---|---|---|\n");
+    out.push_str("| key | unit | allowed | default | what it is | what a higher value, or a choice, does |\n|---|---|---|---|---|---|\n");
     for row in rows {
         let cells = [&format!("`{}`", row.name), &row.unit, &row.range, &row.default, &row.about, &row.effect];
         let cells: Vec<_> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();

@@ -220,7 +220,8 @@ fn alternatives(schema: &Json) -> Vec<Json> {
         .collect()
 }
 
-fn types(schema: &Json) -> Vec<&str> {
+/// The types a schema allows, without `null`.
+pub(crate) fn types(schema: &Json) -> Vec<&str> {
     match &schema["type"] {
         Json::String(one) => vec![one],
         Json::Array(many) => many.iter().filter_map(Json::as_str).filter(|name| *name != "null").collect(),

@@ -1,0 +1,140 @@
+//! Every bad request: one exact line, an exit code, nothing written.
+
+use super::Place;
+
+/// The command fails with this one line and code, and no file is made or lost.
+fn refused(place: &Place, arguments: &[&str], line: &str, code: i32) {
+    let before = place.files();
+    let said = place.run(arguments);
+    assert_eq!(said.err, format!("error: {line}\n"), "{arguments:?}");
+    assert_eq!((said.code, said.out.as_str()), (code, ""), "{arguments:?}");
+    assert_eq!(place.files(), before, "{arguments:?} left something behind");
+}
+
+const SIZES: &str = "'size' in [world] must be a whole number of cells between 16 and 16384, or two such: [1024, 512]";
+
+#[test]
+fn flags() {
+    let place = Place::new();
+    let grow = |rest: &[&str], line: &str| {
+        let arguments = [&["grow", "fbm-smooth"], rest].concat();
+        refused(&place, &arguments, line, 2);
+    };
+    grow(&["--size", "0"], &format!("--size: {SIZES}, not the number 0"));
+    grow(&["--size", "100000"], &format!("--size: {SIZES}, not the number 100000"));
+    grow(&["--size", "-5"], &format!("--size: {SIZES}, not the number -5"));
+    grow(&["--size", "big"], &format!("--size: {SIZES}, not the text 'big'"));
+    grow(&["--size", "64x8"], &format!("--size: {SIZES}, not a list of 2"));
+    grow(&["--seed", "-1"], "--seed -1: must be a whole number from 0 to 9223372036854775807, or random");
+    grow(&["--threads", "0"], "--threads 0: must be a whole number from 1 to 1024");
+    grow(&["--until", "rain"], "--until rain: no such stage (this recipe has: fbm)");
+    grow(
+        &["--set", "fbm.hurts=1"],
+        "--set fbm.hurts: unknown parameter 'hurts' in stage 'fbm' (did you mean 'hurst'?)",
+    );
+    grow(
+        &["--set", "fbm.hurst=9"],
+        "--set fbm.hurst: 'hurst' in stage 'fbm' must be a number between 0.05 and 1.2, not 9",
+    );
+    grow(&["--set", "rain.x=9"], "--set rain.x: no stage 'rain' (this recipe has: fbm)");
+    grow(&["--seeds", "1..4"], "--seeds draws a contact sheet; name it with --sheet FILE.png");
+    grow(&["--sheet", "a.png"], "--sheet draws several seeds; name them with --seeds A..B");
+    grow(&["--seeds", "4..1", "--sheet", "a.png"], "--seeds 4..1: the second seed must not be below the first");
+    grow(&["--seeds", "1..2", "--sheet", "a.txt"], "a.txt: pictures are written as PNG; give the name the ending .png");
+    grow(&["--seeds", "1..2", "--sheet", "no/a.png"], "no/a.png: there is no folder 'no'");
+    grow(&["--colour"], "unexpected argument '--colour' found; see 'upthrust --help'");
+}
+
+#[test]
+fn recipes() {
+    let place = Place::new();
+    place.write("alps.toml", "name = \"Alps\"\n\n[[stage]]\nkind = \"fbm\"\nhurts = 1.0\n");
+    place.write("type.toml", "[world]\nextent_km = \"wide\"\n[[stage]]\nkind = \"fbm\"\n");
+    place.write("range.toml", "[[stage]]\nkind = \"fbm\"\nhurst = 7\n");
+    place.write("twice.toml", "[[stage]]\nid = \"a\"\nkind = \"fbm\"\n[[stage]]\nid = \"a\"\nkind = \"warp\"\n");
+    place.write("kind.toml", "[[stage]]\nkind = \"wrap\"\n");
+    place.write("order.toml", "[[stage]]\nkind = \"warp\"\n");
+    place.write("syntax.toml", "[world\nseed = 1\n");
+    place.write("garbage.toml", [0u8, 159, 146, 150, 10, 255, 254, 0, 7]);
+    place.write("empty.toml", "");
+    std::fs::create_dir(place.path("folder.toml")).unwrap();
+    let grow = |name: &str, line: &str| refused(&place, &["grow", name], line, 2);
+    grow("alps.toml", "alps.toml:5: unknown parameter 'hurts' in stage 'fbm' (did you mean 'hurst'?)");
+    grow(
+        "type.toml",
+        "type.toml:2: 'extent_km' in [world] must be a number between 0.01 and 40075 km, not the text 'wide'",
+    );
+    grow("range.toml", "range.toml:3: 'hurst' in stage 'fbm' must be a number between 0.05 and 1.2, not 7");
+    grow(
+        "twice.toml",
+        "twice.toml:5: stage id 'a' is already taken by the stage at line 2; give each stage its own id",
+    );
+    grow("kind.toml", "kind.toml:2: unknown stage kind 'wrap' (did you mean 'warp'?)");
+    grow(
+        "order.toml",
+        "order.toml:1: stage 'warp' needs the layer 'bedrock', which no earlier stage makes; put such a stage before it",
+    );
+    grow("garbage.toml", "garbage.toml:1: not a text in UTF-8; a recipe is a TOML file");
+    grow("empty.toml", "empty.toml: a recipe needs at least one [[stage]]");
+    grow("no.toml", "no.toml: there is no such file");
+    grow("folder.toml", "folder.toml: this is a folder; name a recipe file in it");
+    grow("fbm-smoth", "fbm-smoth: no preset of that name (did you mean 'fbm-smooth'?)");
+    let said = place.run(&["grow", "syntax.toml"]);
+    assert!(said.err.starts_with("error: syntax.toml:1: ") && said.err.lines().count() == 1, "{}", said.err);
+    assert_eq!(said.code, 2);
+}
+
+#[test]
+fn output_folders() {
+    let place = Place::new();
+    place.write("file", "mine");
+    std::fs::create_dir(place.path("photos")).unwrap();
+    place.write("photos/cat.jpg", "mine");
+    let grow = |rest: &[&str], line: &str| {
+        refused(&place, &[&["grow", "fbm-smooth", "--size", "16"], rest].concat(), line, 2);
+    };
+    grow(&["--out", "photos"], "photos: this folder exists; choose another --out, or replace it with --force");
+    grow(&["--out", "photos", "--force"], "photos: --force replaces worlds only, and this folder has no manifest.json");
+    grow(&["--out", "file"], "file: there is a file of that name; choose another --out");
+    grow(&["--out", "file", "--force"], "file: there is a file of that name; choose another --out");
+    grow(&["--out", "file/world"], "file/world: cannot make this folder: not a directory");
+    grow(&["--out", ".."], "--out '..': name a new folder");
+    #[cfg(target_os = "linux")]
+    grow(&["--out", "/proc/world"], "/proc/world: cannot make this folder: no such file or directory");
+}
+
+#[test]
+fn worlds() {
+    let place = Place::new();
+    place.write("file", "mine");
+    std::fs::create_dir(place.path("empty")).unwrap();
+    refused(&place, &["inspect", "no"], "no: there is no such world", 2);
+    for world in ["file", "empty"] {
+        let said = place.run(&["inspect", world]);
+        assert!(said.code == 2 && said.err.starts_with("error: ") && said.err.lines().count() == 1, "{}", said.err);
+    }
+    let what = "--view slop: neither 'relief' nor a layer (did you mean 'slope'?)";
+    refused(&place, &["render", "no", "a.png", "--view", "slop"], what, 2);
+    refused(&place, &["render", "no", "a.png"], "no: there is no such world", 2);
+    refused(&place, &["render", "no", "a.gif"], "a.gif: pictures are written as PNG; give the name the ending .png", 2);
+    #[cfg(not(feature = "app"))]
+    refused(&place, &["app"], "this build lacks the desktop application; build it with --features app", 2);
+    let named = "the following required arguments were not provided: <WORLD>; see 'upthrust --help'";
+    refused(&place, &["inspect"], named, 2);
+}
+
+#[test]
+fn a_run_that_fails_leaves_nothing() {
+    let place = Place::new();
+    // Fits every range, but not this map: found when the stage begins.
+    let set = ["grow", "rmp-graph", "--size", "16", "--set", "rmp_graph.at_km=[9000, 0]", "--out", "deep/er/w"];
+    let said = place.run(&set);
+    let last = said.err.lines().last().unwrap();
+    assert!(
+        last.starts_with("error: stage 'rmp_graph', step 1: at_km = [9000, 0] lies outside the map"),
+        "{}",
+        said.err
+    );
+    assert_eq!(said.code, 1);
+    assert!(place.files().is_empty(), "{:?}", place.files());
+}

@@ -1,0 +1,136 @@
+//! What a good run leaves behind.
+
+use super::Place;
+
+fn manifest(place: &Place, world: &str) -> serde_json::Value {
+    serde_json::from_slice(&std::fs::read(place.path(world).join("manifest.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn a_folder_holds_the_world_and_its_numbers() {
+    let place = Place::new();
+    let said = place.run(&["grow", "warped-terraces", "--size", "64x48", "--out", "deep/world"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let lines: Vec<&str> = said.out.lines().collect();
+    assert_eq!(lines.len(), 4);
+    assert_eq!((lines[0], lines[1]), ("deep/world", "  upthrust inspect deep/world"));
+    // Not a terminal: a line a stage.
+    assert_eq!(said.err.lines().count(), 3, "{}", said.err);
+    assert!(said.err.starts_with("1/3 fbm: 1 step, "), "{}", said.err);
+
+    let mut names: Vec<_> = std::fs::read_dir(place.path("deep/world"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["height.png", "manifest.json", "relief.png", "world.zarr"]);
+    assert_eq!(std::fs::read_dir(place.path("deep")).unwrap().count(), 1, "something stayed beside");
+
+    let manifest = manifest(&place, "deep/world");
+    assert_eq!(manifest["seed"], 5);
+    assert_eq!(manifest["size"], serde_json::json!([64, 48]));
+    assert_eq!(manifest["cell_m"], 120_000.0 / 64.0);
+    assert_eq!(manifest["stages"].as_array().unwrap().len(), 3);
+    assert_eq!(manifest["layers"][0]["layer"], "height");
+    let (black, white) = (&manifest["height_png"]["black_m"], &manifest["height_png"]["white_m"]);
+    assert_eq!((black, white), (&manifest["layers"][0]["min"], &manifest["layers"][0]["max"]));
+    let picture = image::open(place.path("deep/world/height.png")).unwrap();
+    assert_eq!((picture.width(), picture.height(), picture.color()), (64, 48, image::ColorType::L16));
+    for account in manifest["ledger"].as_array().unwrap() {
+        let share = account["residual_share"].as_f64().unwrap();
+        assert!(share.abs() <= 1e-6, "{account}");
+    }
+}
+
+#[test]
+fn the_same_world_for_any_number_of_threads() {
+    let place = Place::new();
+    let hashes = |threads: &str| {
+        let said = place.run(&["grow", "warped-terraces", "--size", "96", "--threads", threads, "--json"]);
+        assert_eq!(said.err, "");
+        let manifest: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+        assert_eq!(manifest["threads"], threads.parse::<u64>().unwrap());
+        manifest["layers"].clone()
+    };
+    let one = hashes("1");
+    assert_eq!(one, hashes("2"));
+    assert_eq!(one, hashes("8"));
+    // Three runs without --out stand side by side.
+    for name in ["warped-terraces-5", "warped-terraces-5-2", "warped-terraces-5-3"] {
+        assert!(place.path("worlds").join(name).is_dir(), "{name}");
+    }
+}
+
+#[test]
+fn the_kept_recipe_grows_the_same_world() {
+    let place = Place::new();
+    let first = ["grow", "fault-blocks", "--size", "48", "--seed", "77", "--set", "fault.faults=9", "--out", "a", "-q"];
+    let said = place.run(&first);
+    assert_eq!((said.code, said.out.as_str(), said.err.as_str()), (0, "a\n", ""));
+    place.write("again.toml", manifest(&place, "a")["recipe"].as_str().unwrap());
+    assert_eq!(place.run(&["grow", "again.toml", "--out", "b"]).code, 0);
+    assert_eq!(manifest(&place, "a")["layers"], manifest(&place, "b")["layers"]);
+    assert_eq!(manifest(&place, "b")["seed"], 77);
+}
+
+#[test]
+fn force_replaces_a_world_and_until_ends_early() {
+    let place = Place::new();
+    let grow = |rest: &[&str]| place.run(&[&["grow", "warped-terraces", "--size", "16", "--out", "w"], rest].concat());
+    assert_eq!(grow(&[]).code, 0);
+    assert_eq!(grow(&[]).code, 2);
+    let said = grow(&["--force", "--until", "terrace"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let manifest = manifest(&place, "w");
+    assert_eq!(manifest["stages"].as_array().unwrap().len(), 2);
+    assert_eq!(manifest["until"], "terrace");
+    assert_eq!(std::fs::read_dir(place.folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_failed_force_keeps_the_old_world() {
+    let place = Place::new();
+    assert_eq!(place.run(&["grow", "rmp-graph", "--size", "16", "--out", "w"]).code, 0);
+    let before = manifest(&place, "w");
+    let set = "rmp_graph.at_km=[9000, 0]";
+    assert_eq!(place.run(&["grow", "rmp-graph", "--size", "16", "--out", "w", "--force", "--set", set]).code, 1);
+    assert_eq!(manifest(&place, "w"), before);
+    assert_eq!(std::fs::read_dir(place.folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn sheets_pictures_and_numbers() {
+    let place = Place::new();
+    let said = place.run(&["grow", "fbm-rough", "--size", "32", "--seeds", "3..5", "--sheet", "s.png"]);
+    assert_eq!((said.code, said.out.as_str()), (0, "s.png\n"), "{}", said.err);
+    assert!(image::open(place.path("s.png")).unwrap().width() > 96);
+    assert_eq!(place.files(), ["s.png"]);
+
+    assert_eq!(place.run(&["grow", "fbm-rough", "--size", "32", "--out", "w"]).code, 0);
+    for world in ["w", "w/world.zarr"] {
+        let said = place.run(&["inspect", world, "--json", "--report", "r.txt"]);
+        assert_eq!(said.code, 0, "{}", said.err);
+        let numbers: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+        assert_eq!(numbers["layers"], manifest(&place, "w")["layers"]);
+        assert!(std::fs::read_to_string(place.path("r.txt")).unwrap().contains("hypsometry"));
+        for view in ["relief", "slope", "bedrock"] {
+            let said = place.run(&["render", world, "p.png", "--view", view]);
+            assert_eq!((said.code, said.out.as_str()), (0, "p.png\n"), "{}", said.err);
+            assert!(image::open(place.path("p.png")).is_ok());
+        }
+    }
+    let said = place.run(&["render", "w", "q.png", "--view", "lava"]);
+    let line = "error: --view lava: this world has no layer 'lava' (it has: height, slope, bedrock)\n";
+    assert_eq!((said.code, said.err.as_str()), (2, line));
+    assert!(!place.path("q.png").exists());
+}
+
+#[test]
+fn random_seeds_are_told() {
+    let place = Place::new();
+    let said = place.run(&["grow", "fbm-smooth", "--size", "16", "--seed", "random", "--json"]);
+    let manifest: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let seed = manifest["seed"].as_u64().unwrap();
+    assert!(seed < 1_000_000);
+    assert!(place.path("worlds").join(format!("fbm-smooth-{seed}")).is_dir());
+}
