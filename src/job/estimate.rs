@@ -11,7 +11,7 @@ const LARGE_CELLS: f64 = 4096.0 * 4096.0;
 /// Longer sides of the two trial runs.
 const TRIALS: [usize; 2] = [128, 256];
 /// Seconds a million cells that storing and drawing take on two cores.
-const WRITING_S_PER_MCELL: f64 = 0.6;
+const WRITING_S_PER_MCELL: f64 = 0.35;
 /// Fields of a map's size that solvers and writers hold besides the layers.
 const WORKING_FIELDS: usize = 6;
 

@@ -284,4 +284,40 @@ mod tests {
         let world = timeline.run(&mut [], &mut |_| ()).unwrap();
         assert!(world.layer(Layer::Sediment).is_none());
     }
+
+    /// Runs one stage on ground with one parameter set; a refusal in words is fine, a panic or a bad value is not.
+    fn survives(kind: &str, set: String, world: &str) {
+        let base = "[[stage]]\nkind = \"fbm\"\nid = \"base\"\n";
+        let text = format!("[world]\nsize = 16\n{world}\n{base}[[stage]]\nid = \"own\"\nkind = \"{kind}\"\n");
+        let source = Source { name: "t".into(), file: "t.toml".into(), folder: PathBuf::new(), text };
+        let plan = Plan::new(&source, &Overrides { set: vec![set.clone()], ..Overrides::default() });
+        let plan = plan.unwrap_or_else(|e| panic!("{kind}: {e}"));
+        let stay = AtomicBool::new(false);
+        match Timeline::new(&plan, &stay).run(&mut [], &mut |_| ()) {
+            Ok(_) | Err(TimelineError::Process { .. }) => {}
+            Err(error) => panic!("{kind} with {set} and {world}: {error}"),
+        }
+    }
+
+    #[test]
+    fn the_ends_of_every_range_are_safe() {
+        for kind in crate::recipe::stage_kinds().iter().filter(|kind| kind.kind != "drip") {
+            for (key, property) in kind.schema["properties"].as_object().unwrap() {
+                for bound in ["minimum", "maximum"] {
+                    if property[bound].is_number() {
+                        // Schemas state the ranges of counts as fractions too.
+                        let whole = property["type"].as_str() == Some("integer");
+                        let value = property[bound].as_f64().unwrap();
+                        let value = if whole { format!("{value:.0}") } else { format!("{value:?}") };
+                        survives(kind.kind, format!("own.{key}={value}"), "");
+                    }
+                }
+            }
+            for world in ["extent_km = 0.01", "extent_km = 40075", "edges = \"wrap\"", "sea_level_m = 12000"] {
+                survives(kind.kind, "own.enabled=true".into(), world);
+            }
+            survives(kind.kind, "world.size=[16, 1024]".into(), "");
+            survives(kind.kind, "world.size=[1024, 16]".into(), "");
+        }
+    }
 }
