@@ -1,22 +1,40 @@
-//! Upthrust grows a world from its plates.
+//! Upthrust grows a world from its plates: rigid plates drift and collide, ranges rise where they meet, and a picture, a
+//! heightmap and a store of layers come out.
+//!
+//! The rooms, in the order in which they may import each other (a room imports only rooms above it):
+//!
+//! - [`grid`], [`noise`], [`rmp`]: rasters in metres, keyed randomness, random partitions. Numerics only.
+//! - [`world`], [`process`]: what all solvers meet through, and what a solver looks like.
+//! - [`crust`]: how high a column of rock floats.
+//! - [`terrain`], [`tectonics`]: the stages. They never import each other.
+//! - [`recipe`], [`timeline`]: a recipe becomes a checked plan, a plan becomes a world.
+//! - [`measure`], [`relief`], [`export`]: numbers, pictures and files of a world.
+//! - [`job`], [`cli`]: recipe to files on a worker, and the command line.
 
 #![warn(missing_docs)]
 
-pub mod crust;
-pub mod cli;
-pub mod export;
 pub mod grid;
-pub mod job;
-pub mod measure;
 pub mod noise;
-pub mod process;
 pub mod rmp;
+
+pub mod world;
+
+pub mod process;
+
+pub mod crust;
+
 pub mod tectonics;
 pub mod terrain;
-pub mod relief;
+
 pub mod recipe;
-pub mod relief;
-pub mod rmp;
-pub mod terrain;
 pub mod timeline;
-pub mod world;
+
+pub mod measure;
+
+pub mod relief;
+
+pub mod export;
+
+pub mod job;
+
+pub mod cli;

@@ -106,7 +106,8 @@ mod tests {
         let slope = [0.07, -0.03];
         for i in 0..20_000 {
             let at = [i as f64 * 13.7, i as f64 * 7.3];
-            let step = GULLIES.value(Key::new(2), [at[0] + 0.5, at[1]], slope, 10.0) - GULLIES.value(Key::new(2), at, slope, 10.0);
+            let step = GULLIES.value(Key::new(2), [at[0] + 0.5, at[1]], slope, 10.0)
+                - GULLIES.value(Key::new(2), at, slope, 10.0);
             // Steepest possible: 2π·relief·the windows' own slope, over half a metre.
             assert!(step.abs() < 0.5 * 0.1 * 30.0, "{step}");
         }

@@ -1,11 +1,6 @@
 //! The recipes that come with the program.
 
-use std::path::PathBuf;
-
-use super::{
-    error::{Problem, RecipeError},
-    source::Source,
-};
+use super::source::Source;
 
 /// A built-in recipe.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,31 +9,32 @@ pub struct Preset {
     pub name: &'static str,
     /// Its text.
     pub text: &'static str,
-    /// Files it uses, by the name in its text.
-    pub files: &'static [(&'static str, &'static [u8])],
 }
 
 macro_rules! presets {
-    ($($name:literal $([$($file:literal),*])?;)*) => {
-        &[$(Preset {
-            name: $name,
-            text: include_str!(concat!("../../presets/", $name, ".toml")),
-            files: &[$($(($file, include_bytes!(concat!("../../presets/", $file)))),*)?],
-        }),*]
+    ($($name:literal)*) => {
+        &[$(Preset { name: $name, text: include_str!(concat!("../../presets/", $name, ".toml")) }),*]
     };
 }
 
-/// Every preset, in the order in which a reader meets them. A preset's own files stand after its name in brackets.
+/// Every preset, in the order in which a reader meets them.
 const ALL: &[Preset] = presets! {
-    "fbm-smooth";
-    "fbm-rough";
-    "multifractal-range";
-    "warped-terraces";
-    "diamond-square";
-    "fault-blocks";
-    "rmp-peak";
-    "rmp-ridge";
-    "rmp-graph";
+    "collision"
+    "archipelago-arc"
+    "rift"
+    "supercontinent"
+    "blocks"
+    "my-continents"
+    "thesis"
+    "fbm-smooth"
+    "fbm-rough"
+    "multifractal-range"
+    "warped-terraces"
+    "diamond-square"
+    "fault-blocks"
+    "rmp-peak"
+    "rmp-ridge"
+    "rmp-graph"
 };
 
 /// Every preset.
@@ -62,39 +58,10 @@ impl Preset {
         (text("name"), text("description"))
     }
 
-    /// The recipe, its files laid out where a stage can read them.
-    pub fn source(&self) -> Result<Source, RecipeError> {
-        let folder = if self.files.is_empty() { PathBuf::new() } else { self.unpack()? };
-        Ok(Source { name: self.name.to_owned(), file: self.name.to_owned(), folder, text: self.text.to_owned() })
-    }
-
-    /// Writes the preset's files to the system's temporary folder, in a folder named after what they hold, so that
-    /// several runs and versions share them safely.
-    fn unpack(&self) -> Result<PathBuf, RecipeError> {
-        use sha2::Digest;
-        let mut hash = sha2::Sha256::new();
-        self.files.iter().for_each(|(_, bytes)| hash.update(bytes));
-        let tag: String = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
-        let folder = std::env::temp_dir().join(format!("upthrust-{}-{tag}", self.name));
-        let write = || -> std::io::Result<()> {
-            std::fs::create_dir_all(&folder)?;
-            for (name, bytes) in self.files {
-                let path = folder.join(name);
-                if std::fs::read(&path).is_ok_and(|there| there == *bytes) {
-                    continue;
-                }
-                let beside = folder.join(format!(".{name}.{}", std::process::id()));
-                std::fs::write(&beside, bytes)?;
-                std::fs::rename(&beside, &path)?;
-            }
-            Ok(())
-        };
-        let refuse = |e: std::io::Error| RecipeError {
-            at: self.name.to_owned(),
-            problem: Box::new(Problem::Unreadable(format!("cannot lay out its files in {}: {e}", folder.display()))),
-        };
-        write().map_err(refuse)?;
-        Ok(folder)
+    /// The recipe.
+    pub fn source(&self) -> Source {
+        let name = self.name.to_owned();
+        Source { file: name.clone(), name, folder: Default::default(), text: self.text.to_owned() }
     }
 }
 

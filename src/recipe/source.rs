@@ -28,7 +28,7 @@ impl Source {
         let path = Path::new(asked);
         let looks_like_path = asked.contains(['/', '\\']) || asked.ends_with(".toml");
         if !looks_like_path && let Some(preset) = presets::find(asked) {
-            return preset.source();
+            return Ok(preset.source());
         }
         if looks_like_path || path.is_file() {
             return Self::read(path);

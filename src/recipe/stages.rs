@@ -8,6 +8,7 @@ use serde_json::Value as Json;
 
 use crate::{
     process::{Placement, Process, ProcessError},
+    tectonics::PlatesParams,
     terrain::Shape,
 };
 
@@ -85,6 +86,12 @@ where
 fn table() -> Vec<StageKind> {
     use crate::terrain as t;
     vec![
+        StageKind {
+            blends: true,
+            ..row("plates", "Plates", "Rigid plates drift and collide; ranges rise where they meet.", |plates: PlatesParams, setting| {
+                Ok(plates.process(setting.placement, setting.steps))
+            })
+        },
         ground::<t::FbmParams>("fbm", "Fractal ground", "Fractional Brownian motion: hills whose roughness is a number."),
         ground::<t::MultifractalParams>("multifractal", "Multifractal ground", "Smooth valleys below rough crests."),
         ground::<t::WarpParams>("warp", "Warp", "Bends the ground that is there, as if it were rubber."),

@@ -205,7 +205,7 @@ fn schemas_keep_to_what_the_check_understands() {
 #[test]
 fn presets_are_plans() {
     for preset in presets() {
-        let plan = Plan::new(&preset.source().unwrap(), &Overrides::default());
+        let plan = Plan::new(&preset.source(), &Overrides::default());
         assert!(plan.is_ok(), "{}", plan.unwrap_err());
     }
 }

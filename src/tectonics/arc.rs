@@ -26,7 +26,15 @@ pub struct Arc {
 }
 
 /// The height each cell gains where a stretch raises volcanoes by `height_m` at their peaks.
-pub fn cones(plate: &Plate, stretch: &Stretch, arc: &Arc, height_m: f64, key: Key, site_key: Key, brush: &mut Brush) -> Vec<Share> {
+pub fn cones(
+    plate: &Plate,
+    stretch: &Stretch,
+    arc: &Arc,
+    height_m: f64,
+    key: Key,
+    site_key: Key,
+    brush: &mut Brush,
+) -> Vec<Share> {
     if stretch.meeting != Meeting::Subduction {
         return Vec::new();
     }
@@ -42,7 +50,11 @@ pub fn cones(plate: &Plate, stretch: &Stretch, arc: &Arc, height_m: f64, key: Ke
             brush.cover(&outline, frame.width, frame.height, |x, y, coverage| {
                 let index = y * frame.width + x;
                 if plate.owned[index] {
-                    gains.push(Share { plate: stretch.over, cell: index, share: height_m * strength * coverage as f64 });
+                    gains.push(Share {
+                        plate: stretch.over,
+                        cell: index,
+                        share: height_m * strength * coverage as f64,
+                    });
                 }
             });
         }

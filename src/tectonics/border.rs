@@ -17,9 +17,7 @@ const WINDOW: isize = 6;
 pub struct BorderCell {
     /// Row-major index.
     pub cell: usize,
-    /// The plate on top (or that owns the cell, where none is).
-    pub over: usize,
-    /// The other plate.
+    /// The plate below, or simply the other one where none is.
     pub under: usize,
     /// What happens.
     pub meeting: Meeting,
@@ -72,11 +70,11 @@ fn border_cell(run: &Simulation, x: usize, y: usize, a: usize, b: usize) -> Opti
     // Rock a few cells to either side, clear of the ragged rim.
     let aside = normal * (3.0 * run.domain.cell_m());
     let rock = |plate: usize, at: DVec2| run.plates[plate].owned_under(at).map(|i| run.plates[plate].rock[i]);
-    let (over, under, meeting) = match classify(relative, normal) {
+    let (_, under, meeting) = match classify(relative, normal) {
         Motion::Quiet => return None,
         Motion::Divergent => (a, b, Meeting::Spreading),
         Motion::Transform => (a, b, Meeting::Transform),
         Motion::Convergent => meeting((a, &rock(a, at_m - aside)?), (b, &rock(b, at_m + aside)?), &run.polarity),
     };
-    Some(BorderCell { cell, over, under, meeting, closing_m_per_yr })
+    Some(BorderCell { cell, under, meeting, closing_m_per_yr })
 }

@@ -79,11 +79,6 @@ impl Contact {
         self.relative_m_per_yr.dot(self.normal)
     }
 
-    /// Speed at which they slide past each other, m/yr.
-    pub fn sliding_m_per_yr(&self) -> f64 {
-        self.relative_m_per_yr.perp_dot(self.normal).abs()
-    }
-
     /// What the boundary does.
     pub fn motion(&self) -> Motion {
         classify(self.relative_m_per_yr, self.normal)

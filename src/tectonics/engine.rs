@@ -117,7 +117,13 @@ pub struct Engine {
 struct Begins(Mutex<Vec<(ColliderHandle, ColliderHandle)>>);
 
 impl EventHandler for Begins {
-    fn handle_collision_event(&self, _: &RigidBodySet, _: &ColliderSet, event: CollisionEvent, _: Option<&ContactPair>) {
+    fn handle_collision_event(
+        &self,
+        _: &RigidBodySet,
+        _: &ColliderSet,
+        event: CollisionEvent,
+        _: Option<&ContactPair>,
+    ) {
         if let (CollisionEvent::Started(a, b, _), Ok(mut pairs)) = (event, self.0.lock()) {
             pairs.push((a, b));
         }
@@ -134,7 +140,8 @@ struct PassThrough;
 impl PhysicsHooks for PassThrough {
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
         let beam = |handle: ColliderHandle| context.colliders.get(handle).is_some_and(|c| c.user_data == BEAM);
-        if !beam(context.collider1) && !beam(context.collider2)
+        if !beam(context.collider1)
+            && !beam(context.collider2)
             && let Some(manifold) = context.rigid_mut()
         {
             manifold.solver_contacts.clear();
@@ -152,7 +159,13 @@ fn double(v: Vector) -> DVec2 {
 
 impl Engine {
     /// Plates with these outlines (engine units, counter-clockwise), at rest in their places, each moved by its drive.
-    pub fn new(domain: Domain, outlines: &[Polygon], drives: Vec<Drive>, mantle: Mantle, settings: Settings) -> Option<Self> {
+    pub fn new(
+        domain: Domain,
+        outlines: &[Polygon],
+        drives: Vec<Drive>,
+        mantle: Mantle,
+        settings: Settings,
+    ) -> Option<Self> {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::ZERO;
         world.integration_parameters.dt = DT as f32;
@@ -162,8 +175,18 @@ impl Engine {
             plates.push(insert_plate(&mut world, outline, index)?);
         }
         let beams = insert_beams(&mut world);
-        let mut engine =
-            Self { world, domain, settings, plates, drives, beams, mantle, elapsed_s: 0.0, start_overlap_m: Vec::new(), begun: Vec::new() };
+        let mut engine = Self {
+            world,
+            domain,
+            settings,
+            plates,
+            drives,
+            beams,
+            mantle,
+            elapsed_s: 0.0,
+            start_overlap_m: Vec::new(),
+            begun: Vec::new(),
+        };
         if settings.style == Style::Overriding {
             for plate in 0..engine.plates.len() {
                 let velocity = vector(engine.target_velocity(plate));
@@ -204,7 +227,8 @@ impl Engine {
             let begins = Begins::default();
             self.world.step_with_events(&(), &begins);
             let pairs = begins.0.into_inner().unwrap_or_default();
-            let contacts = pairs.into_iter().filter_map(|(a, b)| self.world.contact_pair(a, b).and_then(|p| self.read_contact(p)));
+            let contacts =
+                pairs.into_iter().filter_map(|(a, b)| self.world.contact_pair(a, b).and_then(|p| self.read_contact(p)));
             let mut begun: Vec<[DVec2; 2]> = contacts.flatten().map(|c| c.ends_m).collect();
             begun.sort_by(|a, b| a[0].x.total_cmp(&b[0].x).then(a[0].y.total_cmp(&b[0].y)));
             self.begun.extend(begun);
@@ -257,7 +281,8 @@ impl Engine {
         let ids = colliders.map(|c| c.user_data as usize);
         let contacts = pair.manifolds().iter().filter(|m| m.points.len() == 2).map(|manifold| {
             let world = |side: usize, point: Vector| self.domain.to_map(double(colliders[side].position() * point));
-            let surface = [0, 1].map(|k| [world(0, manifold.points[k].local_p1), world(1, manifold.points[k].local_p2)]);
+            let surface =
+                [0, 1].map(|k| [world(0, manifold.points[k].local_p1), world(1, manifold.points[k].local_p2)]);
             let dist = manifold.points[0].dist.min(manifold.points[1].dist) as f64;
             let normal = double(colliders[0].position().rotation * manifold.local_n1).normalize();
             let ends_m = surface.map(|[a, b]| (a + b) / 2.0);
@@ -396,7 +421,8 @@ fn insert_beams(world: &mut PhysicsWorld) -> Vec<(RigidBodyHandle, DVec2)> {
         .into_iter()
         .map(|side| {
             let half = side.perp().abs() * (out + BEAM_HALF) + side.abs() * BEAM_HALF;
-            let collider = ColliderBuilder::cuboid(half.x as f32, half.y as f32).friction(0.0).restitution(0.2).user_data(BEAM);
+            let collider =
+                ColliderBuilder::cuboid(half.x as f32, half.y as f32).friction(0.0).restitution(0.2).user_data(BEAM);
             let body = RigidBodyBuilder::kinematic_velocity_based().translation(vector(side * out));
             (world.insert(body, collider).0, -side)
         })

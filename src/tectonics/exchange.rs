@@ -71,7 +71,8 @@ pub fn compose(domain: &Domain, plates: &[Plate], polarity: &Polarity) -> Owners
     for_each_row(&mut pairs, n, |y, row| {
         let mut near = Vec::with_capacity(plates.len());
         for (block, cells) in row.chunks_mut(32).enumerate() {
-            let (first, last) = (domain.cell_center_m(block * 32, y), domain.cell_center_m(block * 32 + cells.len() - 1, y));
+            let (first, last) =
+                (domain.cell_center_m(block * 32, y), domain.cell_center_m(block * 32 + cells.len() - 1, y));
             near.clear();
             near.extend((0..plates.len()).filter(|&p| {
                 let [low, high] = bounds[p];
@@ -171,7 +172,8 @@ fn cells_over(domain: &Domain, plate: &Plate, wanted: impl Fn(usize) -> bool) ->
         (low, high) = (low.min(at), high.max(at));
     }
     let frame = &plate.frame;
-    let range = |from: f64, to: f64, size: usize| (from - 1.0).max(0.0) as usize..((to + 2.0).max(0.0) as usize).min(size);
+    let range =
+        |from: f64, to: f64, size: usize| (from - 1.0).max(0.0) as usize..((to + 2.0).max(0.0) as usize).min(size);
     let (xs, ys) = (range(low.x, high.x, frame.width), range(low.y, high.y, frame.height));
     ys.flat_map(|y| xs.clone().map(move |x| y * frame.width + x)).collect()
 }

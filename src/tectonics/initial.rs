@@ -33,7 +33,8 @@ const OLD_BELT_DRAWS: u64 = 40;
 
 /// Plate index of every tectonic cell for convex plates in engine units.
 pub fn owners_of(domain: &Domain, outlines: &[Polygon]) -> Vec<u8> {
-    let inside = |outline: &Polygon, p: DVec2| super::partition::edges(outline).all(|(a, b)| (b - a).perp_dot(p - a) >= 0.0);
+    let inside =
+        |outline: &Polygon, p: DVec2| super::partition::edges(outline).all(|(a, b)| (b - a).perp_dot(p - a) >= 0.0);
     (0..domain.cells * domain.cells)
         .map(|i| {
             let at = domain.to_engine(domain.cell_center_m(i % domain.cells, i / domain.cells));

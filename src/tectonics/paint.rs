@@ -16,7 +16,8 @@ const MOST_PLATES: usize = 60;
 
 /// Brightness of a picture, 0 to 1, over the square; beyond the map its rim is continued.
 pub fn light(domain: &Domain, warp: &Warp, path: &str) -> Result<Field<f32>, ProcessError> {
-    let picture = open_picture(Path::new(path)).map_err(|e| ProcessError::Unfit(format!("continents: {e}")))?.into_luma8();
+    let picture =
+        open_picture(Path::new(path)).map_err(|e| ProcessError::Unfit(format!("continents: {e}")))?.into_luma8();
     Ok(Field::from_fn(domain.grid(), |x, y| {
         let at_m = warp.shown_at(domain.cell_center_m(x, y));
         let [px, py] = pixel(domain, at_m, [picture.width(), picture.height()]);
@@ -42,7 +43,10 @@ pub fn plates(domain: &Domain, warp: &Warp, path: &str) -> Result<(Vec<u8>, usiz
     let mut kept: Vec<([u8; 3], usize)> = colours.into_iter().filter(|(_, count)| *count > least).collect();
     kept.sort_by_key(|&(colour, count)| (std::cmp::Reverse(count), colour));
     if !(2..=MOST_PLATES).contains(&kept.len()) {
-        return Err(unfit(format!("{path} has {} colours; draw 2 to {MOST_PLATES} plates in one flat colour each", kept.len())));
+        return Err(unfit(format!(
+            "{path} has {} colours; draw 2 to {MOST_PLATES} plates in one flat colour each",
+            kept.len()
+        )));
     }
     let distance = |a: [u8; 3], b: [u8; 3]| (0..3).map(|k| (a[k] as i32 - b[k] as i32).pow(2)).sum::<i32>();
     let owners = Field::from_fn(domain.grid(), |x, y| {

@@ -148,7 +148,8 @@ mod tests {
                 // The middle of each edge lies on the square's side or on exactly one other plate's edge.
                 let middle = (a + b) / 2.0;
                 let on_rim = middle.abs().max_element() > SIDE_UNITS / 2.0 - 1e-9;
-                let shared = plates.iter().filter(|other| !std::ptr::eq(*other, plate)).filter(|other| on_edge(other, middle));
+                let shared =
+                    plates.iter().filter(|other| !std::ptr::eq(*other, plate)).filter(|other| on_edge(other, middle));
                 assert_eq!(shared.count(), usize::from(!on_rim));
             }
         }

@@ -93,7 +93,13 @@ pub struct Plate {
 
 impl Plate {
     /// A plate that owns the tectonic cells for which `own(x, y)` holds, with room to grow by `reach_m` on all sides.
-    pub fn new(domain: &Domain, pose: Pose, reach_m: f64, own: impl Fn(usize, usize) -> bool, rock: impl Fn(usize, usize) -> Rock) -> Self {
+    pub fn new(
+        domain: &Domain,
+        pose: Pose,
+        reach_m: f64,
+        own: impl Fn(usize, usize) -> bool,
+        rock: impl Fn(usize, usize) -> Rock,
+    ) -> Self {
         let n = domain.cells;
         let (mut low, mut high) = ([n, n], [0, 0]);
         for y in 0..n {
@@ -164,12 +170,16 @@ impl Plate {
         let mut sum = [0.0f64; 6];
         let mut rated_myr = f32::NEG_INFINITY;
         let mut weight = 0.0;
-        for (dx, dy, w) in
-            [(0.0, 0.0, (1.0 - f.x) * (1.0 - f.y)), (1.0, 0.0, f.x * (1.0 - f.y)), (0.0, 1.0, (1.0 - f.x) * f.y), (1.0, 1.0, f.x * f.y)]
-        {
+        for (dx, dy, w) in [
+            (0.0, 0.0, (1.0 - f.x) * (1.0 - f.y)),
+            (1.0, 0.0, f.x * (1.0 - f.y)),
+            (0.0, 1.0, (1.0 - f.x) * f.y),
+            (1.0, 1.0, f.x * f.y),
+        ] {
             let Some(i) = self.frame.cell_at(base + DVec2::new(dx, dy)).filter(|&i| self.owned[i]) else { continue };
             let r = &self.rock[i];
-            for (s, v) in sum.iter_mut().zip([r.crust_m, r.added_m, r.edifice_m, r.kind, r.born_myr, r.rate_m_per_myr]) {
+            for (s, v) in sum.iter_mut().zip([r.crust_m, r.added_m, r.edifice_m, r.kind, r.born_myr, r.rate_m_per_myr])
+            {
                 *s += w * v as f64;
             }
             weight += w;
@@ -190,9 +200,8 @@ impl Plate {
     /// Corners of a box around its owned cells, map metres.
     pub fn bounds_m(&self) -> [DVec2; 2] {
         let [xs, ys] = self.span().map(|s| [s.start as f64, s.end as f64]);
-        let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| {
-            self.pose.to_map(self.frame.corner_m + DVec2::new(xs[i], ys[j]) * self.frame.cell_m)
-        });
+        let corners = [(0, 0), (1, 0), (0, 1), (1, 1)]
+            .map(|(i, j)| self.pose.to_map(self.frame.corner_m + DVec2::new(xs[i], ys[j]) * self.frame.cell_m));
         let fold = |f: fn(DVec2, DVec2) -> DVec2| corners[1..].iter().fold(corners[0], |a, &b| f(a, b));
         [fold(DVec2::min), fold(DVec2::max)]
     }

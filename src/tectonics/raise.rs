@@ -90,7 +90,15 @@ pub fn shares(plates: &[Plate], line: &Line, belt: &Belt, key: Key, brush: &mut 
     shares
 }
 
-fn draw_once(plates: &[Plate], line: &Line, belt: &Belt, half_width_m: f64, key: Key, brush: &mut Brush, out: &mut Vec<Share>) {
+fn draw_once(
+    plates: &[Plate],
+    line: &Line,
+    belt: &Belt,
+    half_width_m: f64,
+    key: Key,
+    brush: &mut Brush,
+    out: &mut Vec<Share>,
+) {
     // Wide octaves lean further in than narrow ones: a steep front at the border, a long back slope.
     let shift = line.lean * (line.offset_m + 0.6 * half_width_m);
     let path: Vec<[f64; 2]> = line.path_m.iter().map(|&p| (p + shift).into()).collect();
@@ -134,7 +142,8 @@ pub fn spine(points: &[DVec2], spacing_m: f64) -> Vec<DVec2> {
     let turn = 0.5 * libm::atan2(2.0 * xy, xx - yy);
     let axis = DVec2::new(libm::cos(turn), libm::sin(turn));
     let along = |p: DVec2| (p - mean).dot(axis);
-    let (low, high) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &p| (l.min(along(p)), h.max(along(p))));
+    let (low, high) =
+        points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &p| (l.min(along(p)), h.max(along(p))));
     let bins = (((high - low) / spacing_m).ceil() as usize).clamp(1, 200);
     let mut sums = vec![(DVec2::ZERO, 0.0); bins];
     for &p in points {
@@ -151,7 +160,8 @@ mod tests {
 
     #[test]
     fn a_spine_follows_its_cloud() {
-        let cloud: Vec<DVec2> = (0..200).map(|i| DVec2::new(i as f64, 0.3 * i as f64 + f64::from(i % 3) - 1.0)).collect();
+        let cloud: Vec<DVec2> =
+            (0..200).map(|i| DVec2::new(i as f64, 0.3 * i as f64 + f64::from(i % 3) - 1.0)).collect();
         let spine = spine(&cloud, 20.0);
         assert!(spine.len() >= 9);
         assert!(spine.iter().all(|p| (p.y - 0.3 * p.x).abs() < 0.8));

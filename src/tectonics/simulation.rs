@@ -6,11 +6,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::{
-    crust,
-    noise::Key,
-    rmp::Brush,
-};
+use crate::{crust, noise::Key, rmp::Brush};
 
 use super::{
     arc::{self, Arc},
@@ -46,6 +42,8 @@ pub struct Rules {
     pub speed_m_per_yr: f64,
     /// Length of the run, My.
     pub duration_myr: f64,
+    /// Steps asked for, instead of as many as the speed needs.
+    pub steps: Option<u64>,
 }
 
 /// What entered and left the crust, m³.
@@ -116,8 +114,12 @@ impl Simulation {
         let books = Books { start_m3: plates.iter().map(Plate::crust_m3).sum(), ..Books::default() };
         // A plate moves a thirtieth of a unit an engine step at the plate speed; two that meet, twice that.
         let cells_per_step = 2.0 * engine.step_yr() * rules.speed_m_per_yr / domain.cell_m();
-        let engine_steps = ((CELLS_PER_STEP / cells_per_step) as u64).max(1);
-        let steps = (rules.duration_myr * 1e6 / (engine.step_yr() * engine_steps as f64)).ceil().max(1.0) as u64;
+        let in_all = rules.duration_myr * 1e6 / engine.step_yr();
+        let engine_steps = match rules.steps {
+            Some(steps) => (in_all / steps.max(1) as f64).round().max(1.0) as u64,
+            None => ((CELLS_PER_STEP / cells_per_step) as u64).max(1),
+        };
+        let steps = (in_all / engine_steps as f64).round().max(1.0) as u64;
         let grips = vec![Grip::default(); plates.len() * plates.len()];
         Self {
             domain,
@@ -201,7 +203,8 @@ impl Simulation {
         for cell in lost {
             let volume = cell.rock.thickness_m() * area;
             // Ocean floor sinks; arcs and plateaus on it are scraped off.
-            let kept = if cell.rock.kind > 0.5 { volume } else { (cell.rock.added_m + cell.rock.edifice_m) as f64 * area };
+            let kept =
+                if cell.rock.kind > 0.5 { volume } else { (cell.rock.added_m + cell.rock.edifice_m) as f64 * area };
             self.books.sunk_m3 += volume - kept;
             if kept > 0.0 {
                 self.books.pending_m3 += kept;
@@ -291,13 +294,19 @@ impl Simulation {
             let volume = s.closing_m_per_yr * step_myr * 1e6 * s.length_m() * self.rules.accretion_m;
             let path_m = s.ends_m.to_vec();
             let offset_m = 0.8 * self.rules.arc.offset_m;
-            jobs.push((Line { path_m, lean: s.inland, offset_m, plates: [s.over; 2], work: Work::Thicken }, volume, None));
+            jobs.push((
+                Line { path_m, lean: s.inland, offset_m, plates: [s.over; 2], work: Work::Thicken },
+                volume,
+                None,
+            ));
         }
         let key = self.key.named("raise").with(self.step);
         let shares: Vec<Vec<Share>> = jobs
             .par_iter()
             .enumerate()
-            .map_init(Brush::new, |brush, (i, (line, ..))| raise::shares(&self.plates, line, &self.rules.belt, key.with(i as u64), brush))
+            .map_init(Brush::new, |brush, (i, (line, ..))| {
+                raise::shares(&self.plates, line, &self.rules.belt, key.with(i as u64), brush)
+            })
             .collect();
         let thickest = self.rules.belt.thickest_m as f32;
         for ((_, volume, pot), shares) in jobs.into_iter().zip(&shares) {
@@ -365,7 +374,15 @@ impl Simulation {
             .map_init(Brush::new, |brush, (i, s)| {
                 let pace = (s.closing_m_per_yr / rules.speed_m_per_yr).min(2.0);
                 let height_m = rules.volcano_m_per_myr * pace * step_myr;
-                arc::cones(&self.plates[s.over], s, &rules.arc, height_m, key.with(i as u64), sites.with(s.over as u64), brush)
+                arc::cones(
+                    &self.plates[s.over],
+                    s,
+                    &rules.arc,
+                    height_m,
+                    key.with(i as u64),
+                    sites.with(s.over as u64),
+                    brush,
+                )
             })
             .collect();
         let area = self.domain.cell_m() * self.domain.cell_m();

@@ -31,15 +31,16 @@ use super::{
 const THESIS_BLOCK: f64 = 0.9;
 
 impl PlatesParams {
-    /// The stage as a process.
-    pub fn process(self, placement: Placement) -> Box<dyn Process> {
-        Box::new(Stage { params: self, placement, base: None, run: None, resume: None })
+    /// The stage as a process; `steps` asks for about that many instead of as many as the speed needs.
+    pub fn process(self, placement: Placement, steps: Option<u64>) -> Box<dyn Process> {
+        Box::new(Stage { params: self, placement, steps, base: None, run: None, resume: None })
     }
 }
 
 struct Stage {
     params: PlatesParams,
     placement: Placement,
+    steps: Option<u64>,
     /// Bedrock before the stage.
     base: Option<Field<f32>>,
     run: Option<Run>,
@@ -90,7 +91,9 @@ impl Process for Stage {
         context.check()?;
         let (steps, done) = run.progress();
         if !run.finite() {
-            return Err(ProcessError::Failed(format!("a plate left the numbers at step {done}; lower speed_mm_per_yr")));
+            return Err(ProcessError::Failed(format!(
+                "a plate left the numbers at step {done}; lower speed_mm_per_yr"
+            )));
         }
         Ok(Step { done: done as f64 / steps as f64, elapsed_yr: run.time_yr(&self.params) - before })
     }
@@ -143,7 +146,9 @@ impl Stage {
             self.base = Some(world.layer(Layer::Bedrock).cloned().unwrap_or_else(|| Field::filled(world.grid, 0.0)));
         }
         let mut run = match self.params.style {
-            PlateStyle::Geologic => Run::Geologic(Box::new(Geologic::new(&self.params, world.grid, context.key)?)),
+            PlateStyle::Geologic => {
+                Run::Geologic(Box::new(Geologic::new(&self.params, self.steps, world.grid, context.key)?))
+            }
             PlateStyle::Thesis => Run::Thesis(Box::new(thesis(&self.params, world.grid, context.key)?)),
         };
         if let Some(resume) = self.resume.take() {
@@ -192,11 +197,16 @@ impl Run {
 }
 
 fn settings(params: &PlatesParams, style: Style) -> Settings {
-    Settings { speed_mm_per_yr: params.speed_mm_per_yr, resistance: params.resistance, slab_pull: params.slab_pull, style }
+    Settings {
+        speed_mm_per_yr: params.speed_mm_per_yr,
+        resistance: params.resistance,
+        slab_pull: params.slab_pull,
+        style,
+    }
 }
 
 impl Geologic {
-    fn new(params: &PlatesParams, map: Grid, key: Key) -> Result<Self, ProcessError> {
+    fn new(params: &PlatesParams, steps: Option<u64>, map: Grid, key: Key) -> Result<Self, ProcessError> {
         let domain = Domain::around(&map, params.margin, params.cells as usize);
         let warp = Warp::new(domain.map_m, params.bend, key.named("warp"));
         let (owners, outlines) = match &params.map {
@@ -221,13 +231,22 @@ impl Geologic {
         let reach_m = 2.0 * params.speed_mm_per_yr * 1e3 * params.duration_myr;
         let n = domain.cells;
         let plates: Vec<Plate> = (0..outlines.len())
-            .map(|p| Plate::new(&domain, engine.pose(p), reach_m, |x, y| owners[y * n + x] as usize == p, |x, y| rocks[y * n + x]))
+            .map(|p| {
+                Plate::new(
+                    &domain,
+                    engine.pose(p),
+                    reach_m,
+                    |x, y| owners[y * n + x] as usize == p,
+                    |x, y| rocks[y * n + x],
+                )
+            })
             .collect();
-        let bodies = outlines.iter().enumerate().map(|(p, o)| {
-            o.iter().map(|&v| engine.pose(p).to_body(domain.to_map(v))).collect()
-        });
+        let bodies = outlines
+            .iter()
+            .enumerate()
+            .map(|(p, o)| o.iter().map(|&v| engine.pose(p).to_body(domain.to_map(v))).collect());
         let bodies = bodies.collect();
-        let simulation = Simulation::new(domain, plates, engine, rules(params), key);
+        let simulation = Simulation::new(domain, plates, engine, rules(params, steps), key);
         let first = (0..simulation.plates.len())
             .map(|p| Drift::of(simulation.engine.velocity_at(p, tables::middle(&simulation, p).0)))
             .collect();
@@ -247,7 +266,8 @@ impl Geologic {
         let surface = Surface::of(run, params);
         context.check()?;
         let map_m = run.domain.map_m;
-        let sea_m = params.land_share.map_or(world.sea_level_m, |share| surface.sea_level_for(map_m, &self.warp, share));
+        let sea_m =
+            params.land_share.map_or(world.sea_level_m, |share| surface.sea_level_for(map_m, &self.warp, share));
         for (layer, field) in surface.read(world.grid, &self.warp, params, sea_m, context.key.named("detail")) {
             match layer {
                 Layer::Bedrock => placement.put(base, &field, world, context)?,
@@ -266,7 +286,7 @@ impl Geologic {
     }
 }
 
-fn rules(params: &PlatesParams) -> Rules {
+fn rules(params: &PlatesParams, steps: Option<u64>) -> Rules {
     Rules {
         belt: Belt {
             half_width_m: params.belt_km * 1e3,
@@ -279,6 +299,7 @@ fn rules(params: &PlatesParams) -> Rules {
         volcano_m_per_myr: params.volcano_m_per_myr,
         speed_m_per_yr: params.speed_mm_per_yr * 1e-3,
         duration_myr: params.duration_myr,
+        steps,
     }
 }
 
@@ -298,11 +319,17 @@ fn drives(
         let cell = super::exchange::cell_index(domain, warp.read_at(at_m)).filter(|_| domain.on_map(at_m));
         let cell = cell.ok_or_else(|| {
             let [w, h] = [domain.map_m.x / 1e3, domain.map_m.y / 1e3];
-            ProcessError::Unfit(format!("plate {}: at_km = [{x}, {y}] lies outside the map (0 to {w}, 0 to {h})", index + 1))
+            ProcessError::Unfit(format!(
+                "plate {}: at_km = [{x}, {y}] lies outside the map (0 to {w}, 0 to {h})",
+                index + 1
+            ))
         })?;
         let plate = owners[cell];
         if drives[plate as usize] != Drive::Mantle {
-            return Err(ProcessError::Unfit(format!("plate {}: at_km = [{x}, {y}] lies on a plate that an earlier entry has", index + 1)));
+            return Err(ProcessError::Unfit(format!(
+                "plate {}: at_km = [{x}, {y}] lies on a plate that an earlier entry has",
+                index + 1
+            )));
         }
         let heading = entry.heading_deg.to_radians();
         let direction = DVec2::new(libm::sin(heading), -libm::cos(heading));
@@ -322,9 +349,11 @@ fn thesis(params: &PlatesParams, map: Grid, key: Key) -> Result<Thesis, ProcessE
     let drives = vec![Drive::Mantle; outlines.len()];
     let engine = Engine::new(domain, &outlines, drives, mantle, settings(params, Style::Shaken))
         .ok_or_else(|| ProcessError::Unfit("a plate is too thin to move; ask for fewer plates".to_owned()))?;
-    let inside = |p: DVec2| outlines.iter().position(|o| partition::edges(o).all(|(a, b)| (b - a).perp_dot(p - a) >= 0.0));
-    let ids = Field::from_fn(map, |x, y| inside(domain.to_engine(map.center_m(x, y).into())).map_or(u8::MAX, |p| p as u8));
-    Ok(Thesis::new(engine, domain, ids.data, map, params, key))
+    let inside =
+        |p: DVec2| outlines.iter().position(|o| partition::edges(o).all(|(a, b)| (b - a).perp_dot(p - a) >= 0.0));
+    let ids =
+        Field::from_fn(map, |x, y| inside(domain.to_engine(map.center_m(x, y).into())).map_or(u8::MAX, |p| p as u8));
+    Ok(Thesis::new(engine, ids.data, map, params, key))
 }
 
 fn thesis_table(run: &Thesis) -> Table {

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::{
     crust,
     grid::{Field, Grid, cubic, for_each_row, linear, nearest_feature},
-    noise::{Fbm, Gullies, Key, Octaves},
+    noise::{Fbm, Gullies, Key, Octaves, Sampler},
     world::Layer,
 };
 
@@ -69,7 +69,8 @@ impl Surface {
         let mountain = Field::from_fn(grid, |x, y| {
             let i = grid.index(x, y);
             let r = &rock[i];
-            let whole = crust::height_m((r.crust_m + r.added_m) as f64, r.kind as f64, run.time_myr - r.born_myr as f64);
+            let whole =
+                crust::height_m((r.crust_m + r.added_m) as f64, r.kind as f64, run.time_myr - r.born_myr as f64);
             whole as f32 - base.data[i] + r.edifice_m
         });
         // The strength of the plates carries short loads: what the crust's thickness was at the start shows smoothed.
@@ -98,12 +99,20 @@ impl Surface {
     }
 
     /// Reads the surface onto a map: one field a layer.
-    pub fn read(&self, map: Grid, warp: &Warp, params: &PlatesParams, sea_m: f64, key: Key) -> Vec<(Layer, Field<f32>)> {
+    pub fn read(
+        &self,
+        map: Grid,
+        warp: &Warp,
+        params: &PlatesParams,
+        sea_m: f64,
+        key: Key,
+    ) -> Vec<(Layer, Field<f32>)> {
         let detail = Detail::new(map, params, sea_m, key);
         let mut readings = vec![Reading::default(); map.cells()];
         for_each_row(&mut readings, map.width, |y, row| {
+            let mut ridges = detail.ridges.sampler();
             for (x, reading) in row.iter_mut().enumerate() {
-                *reading = self.read_cell(map.center_m(x, y).into(), warp, &detail);
+                *reading = self.read_cell(map.center_m(x, y).into(), warp, &detail, &mut ridges);
             }
         });
         let layers: [(Layer, fn(&Reading) -> f32); 7] = [
@@ -132,7 +141,7 @@ impl Surface {
         heights.level_above(land_share)
     }
 
-    fn read_cell(&self, at_m: DVec2, warp: &Warp, detail: &Detail) -> Reading {
+    fn read_cell(&self, at_m: DVec2, warp: &Warp, detail: &Detail, ridges: &mut Sampler) -> Reading {
         let (q_m, rows) = warp.read_with_jacobian(at_m);
         let q: [f64; 2] = (q_m - self.corner_m).into();
         let base = cubic(&self.height, q);
@@ -145,7 +154,7 @@ impl Surface {
         let (class, distance) = (&self.boundary.0, &self.boundary.1);
         let near = (distance.data[i] as f64) < detail.border_m;
         Reading {
-            height: (base + detail.height(at_m, base, slope, kind, mountain)) as f32,
+            height: (base + detail.height(at_m, base, slope, [kind, mountain], ridges)) as f32,
             plate: self.plate_at(q) as f32,
             kind: kind.clamp(0.0, 1.0) as f32,
             age: linear(&self.age, q).max(0.0) as f32,
@@ -165,7 +174,8 @@ impl Surface {
     fn plate_at(&self, q: [f64; 2]) -> u8 {
         let g = &self.height.grid;
         let half = 0.5 * g.cell_m;
-        let corners = [[-half, -half], [half, -half], [-half, half], [half, half]].map(|d| self.plate[self.cell_at([q[0] + d[0], q[1] + d[1]])]);
+        let corners = [[-half, -half], [half, -half], [-half, half], [half, half]]
+            .map(|d| self.plate[self.cell_at([q[0] + d[0], q[1] + d[1]])]);
         if corners.iter().all(|&c| c == corners[0]) {
             return corners[0];
         }
@@ -189,14 +199,26 @@ fn ground(run: &Simulation) -> (Vec<u8>, Vec<Rock>) {
             let at_m = run.domain.cell_center_m(i % n, i / n);
             let plate = &run.plates[owner as usize];
             let beside = || plate.sample(run.domain.cell_center_m(from % n, from / n));
-            (owner, plate.sample(at_m).or_else(beside).unwrap_or(Rock { crust_m: crust::OCEAN_THICKNESS_M as f32, ..Rock::default() }))
+            (
+                owner,
+                plate
+                    .sample(at_m)
+                    .or_else(beside)
+                    .unwrap_or(Rock { crust_m: crust::OCEAN_THICKNESS_M as f32, ..Rock::default() }),
+            )
         })
         .collect();
     cells.into_iter().unzip()
 }
 
 /// Shapes that borders press into the ground beside them, m.
-fn profiles(run: &Simulation, params: &PlatesParams, borders: &[BorderCell], plate: &[u8], rock: &[Rock]) -> Field<f32> {
+fn profiles(
+    run: &Simulation,
+    params: &PlatesParams,
+    borders: &[BorderCell],
+    plate: &[u8],
+    rock: &[Rock],
+) -> Field<f32> {
     let grid = run.domain.grid();
     let mut shape = Field::filled(grid, 0.0f32);
     let belt_m = params.belt_km * 1e3;
@@ -227,7 +249,9 @@ fn profile(meeting: Meeting, d: f64, under: bool, rock: &Rock, params: &PlatesPa
     let land = rock.kind as f64;
     match meeting {
         // Trench with a steep inner and a gentle outer wall, then the outer rise.
-        Meeting::Subduction if under => (1.0 - land) * (350.0 * bell(d - 110e3, 45e3) - params.trench_m * bell(d, 38e3)),
+        Meeting::Subduction if under => {
+            (1.0 - land) * (350.0 * bell(d - 110e3, 45e3) - params.trench_m * bell(d, 38e3))
+        }
         Meeting::Subduction => -0.8 * params.trench_m * bell(d, 16e3),
         // The foreland bends down under the range's weight, a belt's width before its front.
         Meeting::Collision if under => -550.0 * land * bell(d - 1.3 * belt_m, 0.8 * belt_m),
@@ -313,7 +337,7 @@ impl Detail {
         }
     }
 
-    fn height(&self, at_m: DVec2, base: f64, slope: DVec2, kind: f64, mountain: f64) -> f64 {
+    fn height(&self, at_m: DVec2, base: f64, slope: DVec2, [kind, mountain]: [f64; 2], ridges: &mut Sampler) -> f64 {
         let at = at_m.into();
         // Low ground near the sea is smooth, uplands are rolling, the deep floor has its hills.
         let above = base - self.sea_m;
@@ -325,7 +349,7 @@ impl Detail {
         let rough = (mountain.max(0.0) / 2500.0).min(1.4) * self.ruggedness;
         if rough > 0.02 {
             // Ridged sums lie between 0 and 1 with a mean near 0.7.
-            height += rough * 1100.0 * (self.ridges.ridged(at) - 0.7);
+            height += rough * 1100.0 * (ridges.ridged(at) - 0.7);
         }
         // Valleys are cut above the sea, the deeper the higher the ground.
         let cut = smoothstep((above + 100.0) / 1500.0) * self.ruggedness;

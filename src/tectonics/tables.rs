@@ -48,7 +48,15 @@ pub fn plates(run: &Simulation, warp: &Warp, first: &[Drift]) -> Table {
         })
         .collect();
     let numbers = |f: &dyn Fn(usize) -> f64| (0..rows.len()).map(f).collect::<Vec<_>>();
-    let crust = |land: f64| if land > 0.7 { "continental" } else if land < 0.3 { "oceanic" } else { "mixed" };
+    let crust = |land: f64| {
+        if land > 0.7 {
+            "continental"
+        } else if land < 0.3 {
+            "oceanic"
+        } else {
+            "mixed"
+        }
+    };
     Table::new("plates")
         .number("id", "1", numbers(&|p| p as f64))
         .number("x_km", "km", numbers(&|p| rows[p].0.x * 1e-3))

@@ -10,7 +10,7 @@ use crate::{
     rmp::{self, Brush},
 };
 
-use super::{domain::Domain, engine::Engine, params::PlatesParams};
+use super::{engine::Engine, params::PlatesParams};
 
 /// Engine steps in one step of the stage: one engine second.
 pub const ENGINE_STEPS: u64 = 30;
@@ -19,8 +19,6 @@ pub const ENGINE_STEPS: u64 = 30;
 pub struct Thesis {
     /// The bodies.
     pub engine: Engine,
-    /// The square.
-    pub domain: Domain,
     /// Heights raised so far, m.
     pub height: Field<f32>,
     /// Plate of every map cell when the run began.
@@ -36,14 +34,13 @@ pub struct Thesis {
 
 impl Thesis {
     /// A run ready for its first step; its warm-up is done.
-    pub fn new(mut engine: Engine, domain: Domain, owners: Vec<u8>, map: Grid, params: &PlatesParams, key: Key) -> Self {
+    pub fn new(mut engine: Engine, owners: Vec<u8>, map: Grid, params: &PlatesParams, key: Key) -> Self {
         engine.step(|_, _| Default::default());
         engine.take_begun();
         let [w, h] = map.extent_m();
         let steps = (params.duration_myr * 1e6 / (engine.step_yr() * ENGINE_STEPS as f64)).ceil().max(1.0) as u64;
         Self {
             engine,
-            domain,
             height: Field::filled(map, 0.0),
             owners,
             collisions: 0,

@@ -1,83 +1,114 @@
 //! The one bend through which the map reads the plates, so that borders, ranges, trenches and coasts curve together.
 //!
-//! `q(p) = p + s·(f₁(p), f₂(p))` with two independent fractal sums. Fold-free where `det(I + s·J) > 0`; `s` is lowered until
-//! the determinant is at least `LEAST_DETERMINANT` on a lattice that does not depend on the map's grid.
+//! A chain of displacements `p -> p + s·(f₁(p), f₂(p))`, from long and strong to short and weak, each with two independent
+//! components. A link does not fold where `det(I + s·J) > 0`; its `s` is lowered until the determinant is at least
+//! `LEAST_DETERMINANT` on a lattice that does not depend on the map's grid. Maps that don't fold, one after the other, don't
+//! fold: a chain bends further than one sum of all wavelengths could.
 
 use glam::DVec2;
 
-use crate::noise::{Basis, Fbm, Key, Octaves};
+use crate::noise::{Fbm, Key, Octaves};
 
-/// Longest bend as a share of the map's longer side.
-const WAVELENGTH: f64 = 0.6;
-/// Octaves of the bend: from a third of the map to its hundredth.
-const OCTAVES: f64 = 6.0;
-/// Smallest area factor left.
-const LEAST_DETERMINANT: f64 = 0.15;
-/// Points a side at which folding is looked for: a quarter of the shortest bend.
-const PROBES: usize = 160;
+/// Wavelength of each link as a share of the map's longer side, and its displacement as a share of the bend asked for.
+const LINKS: [(f64, f64); 4] = [(0.85, 1.0), (0.36, 0.42), (0.15, 0.16), (0.06, 0.06)];
+/// Smallest area factor a link may have.
+const LEAST_DETERMINANT: f64 = 0.3;
+/// Points in a link's wavelength at which folding is looked for.
+const PROBES: f64 = 10.0;
 
 /// A fold-free displacement of the plane.
 #[derive(Clone, Debug)]
 pub struct Warp {
+    links: Vec<Link>,
+}
+
+#[derive(Clone, Debug)]
+struct Link {
     parts: [Octaves; 2],
     amplitude_m: f64,
+}
+
+/// The rows of a Jacobian.
+type Rows = [DVec2; 2];
+
+impl Link {
+    fn new(map_m: DVec2, wavelength_m: f64, amplitude_m: f64, key: Key) -> Self {
+        let fbm = Fbm { octaves: Some(1.0), ..Fbm::new(wavelength_m, 1.0) };
+        let parts = [fbm.octaves(key.named("east"), 0.0), fbm.octaves(key.named("south"), 0.0)];
+        let mut link = Self { parts, amplitude_m };
+        // Links before this one may have carried points a little outside the map.
+        let (low, span) = (-0.2 * map_m, 1.4 * map_m);
+        let count = (span / wavelength_m * PROBES).ceil();
+        let slopes: Vec<Rows> = (0..(count.x * count.y) as usize)
+            .map(|i| {
+                let (x, y) = (i % count.x as usize, i / count.x as usize);
+                let at = low + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) / count * span;
+                [0, 1].map(|k| DVec2::from(link.parts[k].gradient(at.into()).1))
+            })
+            .collect();
+        while slopes.iter().any(|slope| determinant(&rows(slope, link.amplitude_m)) < LEAST_DETERMINANT) {
+            link.amplitude_m *= 0.97;
+        }
+        link
+    }
+
+    fn apply(&self, at_m: DVec2) -> (DVec2, Rows) {
+        let (x, gx) = self.parts[0].gradient(at_m.into());
+        let (y, gy) = self.parts[1].gradient(at_m.into());
+        (at_m + self.amplitude_m * DVec2::new(x, y), rows(&[gx.into(), gy.into()], self.amplitude_m))
+    }
+}
+
+fn rows(slopes: &Rows, amplitude_m: f64) -> Rows {
+    [DVec2::X + amplitude_m * slopes[0], DVec2::Y + amplitude_m * slopes[1]]
+}
+
+fn determinant(rows: &Rows) -> f64 {
+    rows[0].perp_dot(rows[1])
 }
 
 impl Warp {
     /// Bends by about `bend` of the map's longer side, less where that would fold.
     pub fn new(map_m: DVec2, bend: f64, key: Key) -> Self {
         let side = map_m.max_element();
-        let fbm = Fbm { octaves: Some(OCTAVES), basis: Basis::Gradient, ..Fbm::new(WAVELENGTH * side, 1.15) };
-        let parts = [fbm.octaves(key.named("east"), 0.0), fbm.octaves(key.named("south"), 0.0)];
-        let mut warp = Self { parts, amplitude_m: bend * side };
-        let slopes: Vec<[DVec2; 2]> = (0..PROBES * PROBES)
-            .map(|i| {
-                let at = DVec2::new((i % PROBES) as f64 + 0.5, (i / PROBES) as f64 + 0.5) / PROBES as f64 * map_m;
-                [0, 1].map(|k| DVec2::from(warp.parts[k].gradient(at.into()).1))
-            })
-            .collect();
-        let folds = |s: f64| slopes.iter().any(|j| determinant(j, s) < LEAST_DETERMINANT);
-        while warp.amplitude_m > 0.0 && folds(warp.amplitude_m) {
-            warp.amplitude_m *= 0.97;
-        }
-        warp
+        let links = LINKS.iter().enumerate().map(|(i, (wavelength, share))| {
+            Link::new(map_m, wavelength * side, share * bend * side, key.with(i as u64))
+        });
+        Self { links: if bend > 0.0 { links.collect() } else { Vec::new() } }
     }
 
     /// Where the map at `at_m` reads the plates.
     pub fn read_at(&self, at_m: DVec2) -> DVec2 {
-        let at = at_m.into();
-        at_m + self.amplitude_m * DVec2::new(self.parts[0].value(at), self.parts[1].value(at))
+        self.links.iter().fold(at_m, |at, link| {
+            let part = |k: usize| link.parts[k].value(at.into());
+            at + link.amplitude_m * DVec2::new(part(0), part(1))
+        })
     }
 
-    /// `read_at`, and the slope that a surface of slope `slope_of(q)` in the plates has on the map.
-    pub fn read_with_jacobian(&self, at_m: DVec2) -> (DVec2, [DVec2; 2]) {
-        let (x, gx) = self.parts[0].gradient(at_m.into());
-        let (y, gy) = self.parts[1].gradient(at_m.into());
-        let s = self.amplitude_m;
-        let rows = [DVec2::X + s * DVec2::from(gx), DVec2::Y + s * DVec2::from(gy)];
-        (at_m + s * DVec2::new(x, y), rows)
+    /// `read_at` and its Jacobian's rows.
+    pub fn read_with_jacobian(&self, at_m: DVec2) -> (DVec2, Rows) {
+        self.links.iter().fold((at_m, [DVec2::X, DVec2::Y]), |(at, before), link| {
+            let (next, own) = link.apply(at);
+            // Chain rule: the link's own Jacobian times that of the links before it.
+            (next, own.map(|row| row.x * before[0] + row.y * before[1]))
+        })
     }
 
     /// The map point that reads a point of the plates; Newton's method, good to a metre.
     pub fn shown_at(&self, q_m: DVec2) -> DVec2 {
         let mut p = q_m;
-        for _ in 0..20 {
+        for _ in 0..30 {
             let (at, rows) = self.read_with_jacobian(p);
             let error = q_m - at;
             if error.length() < 1.0 {
                 break;
             }
-            let det = rows[0].perp_dot(rows[1]);
-            let step = DVec2::new(rows[1].y * error.x - rows[0].y * error.y, rows[0].x * error.y - rows[1].x * error.x) / det;
+            let step = DVec2::new(rows[1].y * error.x - rows[0].y * error.y, rows[0].x * error.y - rows[1].x * error.x);
             // A step longer than twice the error would be one across a near fold.
-            p += step.clamp_length_max(2.0 * error.length());
+            p += (step / determinant(&rows)).clamp_length_max(2.0 * error.length());
         }
         p
     }
-}
-
-fn determinant(rows: &[DVec2; 2], s: f64) -> f64 {
-    (1.0 + s * rows[0].x) * (1.0 + s * rows[1].y) - s * rows[0].y * s * rows[1].x
 }
 
 #[cfg(test)]
@@ -93,11 +124,22 @@ mod tests {
             for _ in 0..3000 {
                 let p = DVec2::new(stream.unit(), stream.unit()) * map;
                 let (q, rows) = warp.read_with_jacobian(p);
-                assert!(rows[0].x * rows[1].y - rows[0].y * rows[1].x > 0.0, "folds at {p}");
+                assert!(determinant(&rows) > 0.0, "seed {seed} folds at {p}");
                 assert_eq!(q, warp.read_at(p));
             }
             let p = map * 0.4;
             assert!((warp.shown_at(warp.read_at(p)) - p).length() < 20.0);
         }
+    }
+
+    #[test]
+    fn the_jacobian_is_the_slope_of_the_chain() {
+        let warp = Warp::new(DVec2::splat(500e3), 0.08, Key::new(4));
+        let (p, e) = (DVec2::new(211e3, 97e3), 1.0);
+        let rows = warp.read_with_jacobian(p).1;
+        let dx = (warp.read_at(p + DVec2::X * e) - warp.read_at(p - DVec2::X * e)) / (2.0 * e);
+        let dy = (warp.read_at(p + DVec2::Y * e) - warp.read_at(p - DVec2::Y * e)) / (2.0 * e);
+        assert!((dx - DVec2::new(rows[0].x, rows[1].x)).length() < 1e-6);
+        assert!((dy - DVec2::new(rows[0].y, rows[1].y)).length() < 1e-6);
     }
 }

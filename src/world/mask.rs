@@ -54,7 +54,9 @@ impl Mask {
             Ok(Mask::Image(text.into()))
         } else if is_image {
             Ok(Mask::Image(folder.join(text)))
-        } else { Err(unreadable()) }
+        } else {
+            Err(unreadable())
+        }
     }
 
     /// The mask over a world as it stands.

@@ -5,8 +5,8 @@
 mod catalogue;
 mod ledger;
 mod mask;
-pub mod store;
 mod picture;
+pub mod store;
 mod table;
 
 pub use catalogue::{Kind, Layer, Palette, Spec};
