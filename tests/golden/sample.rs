@@ -151,7 +151,7 @@ pub fn fractal(width: usize, height: usize, seed: u64) -> World {
         let step = ((mainland + 0.35) / 0.35).clamp(0.0, 1.0);
         let base = -4400.0 + 4330.0 * step * step * (3.0 - 2.0 * step) + 350.0 * mainland.max(0.0);
         let belt = (-(belts.value(at) / 0.28).powi(2)).exp() * step;
-        let crest = crests.ridged_multifractal(at, 1.0, 2.0);
+        let crest = crests.sampler().ridged_multifractal(at, 1.0, 2.0);
         (base + belt * crest * 3300.0 + hills.value(at) * (60.0 + 250.0 * belt + 80.0 * (1.0 - step))) as f32
     };
     world.set_layer(Layer::Bedrock, Field::from_fn(grid, height));
