@@ -170,7 +170,7 @@ impl Default for PlatesParams {
             resistance: 0.15,
             slab_pull: 0.3,
             old_belts: 6,
-            bend: 0.09,
+            bend: 0.075,
             ruggedness: 1.0,
             cells: 400,
             continents: None,

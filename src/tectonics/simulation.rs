@@ -21,8 +21,10 @@ use super::{
 
 /// Cells that two plates may close in one step at twice the plate speed; an exchange takes three.
 const CELLS_PER_STEP: f64 = 3.0;
-/// Height at which a volcano grows no more above the crust that carries it, m.
+/// Height at which a volcano on sea floor grows no more, m.
 const HIGHEST_VOLCANO_M: f32 = 3_500.0;
+/// How much lower it stays for each metre of crust that was added below it: high ground bears lower cones.
+const VOLCANO_LOSS: f32 = 0.07;
 /// Crust of gap cells beside a continent, as a share of the crust beside them.
 const STRETCHED: f32 = 0.45;
 /// Continental crust thinner than this breaks: what opens beside it is ocean, m.
@@ -387,7 +389,10 @@ impl Simulation {
             .collect();
         let area = self.domain.cell_m() * self.domain.cell_m();
         for gains in gains {
-            self.books.made_m3 += self.apply(&gains, area, |rock| (&mut rock.edifice_m, HIGHEST_VOLCANO_M));
+            self.books.made_m3 += self.apply(&gains, area, |rock| {
+                let most = HIGHEST_VOLCANO_M - VOLCANO_LOSS * rock.added_m;
+                (&mut rock.edifice_m, most.max(0.0))
+            });
         }
     }
 }
