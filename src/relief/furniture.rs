@@ -238,7 +238,7 @@ fn nice(low: f64, high: f64, count: usize) -> Vec<f64> {
     (first..=last).map(|i| i as f64 * step).collect()
 }
 
-/// A number as on a map: a true minus sign, thin groups of thousands, no more digits than it has.
+/// A number as on a map: a true minus sign, commas between thousands, no more digits than it has.
 fn number(value: f64) -> String {
     let size = value.abs();
     let digits = if size >= 10.0 || size == libm::floor(size) {
@@ -253,7 +253,7 @@ fn number(value: f64) -> String {
     let mut grouped = String::new();
     for (i, c) in whole.chars().enumerate() {
         if i > 0 && (whole.len() - i).is_multiple_of(3) && whole.len() > 4 {
-            grouped.push('\u{2009}');
+            grouped.push(',');
         }
         grouped.push(c);
     }
@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn numbers_read_as_on_a_map() {
         let texts = [0.0, -4000.0, 12_000.0, 0.5, 0.25, 2.5, 750.0].map(number);
-        assert_eq!(texts, ["0", "−4000", "12\u{2009}000", "0.5", "0.25", "2.5", "750"]);
+        assert_eq!(texts, ["0", "−4000", "12,000", "0.5", "0.25", "2.5", "750"]);
     }
 
     #[test]

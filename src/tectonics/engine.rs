@@ -172,9 +172,9 @@ impl Engine {
         world.integration_parameters.contact_recycling = false;
         let mut plates = Vec::with_capacity(outlines.len());
         for (index, outline) in outlines.iter().enumerate() {
-            plates.push(insert_plate(&mut world, outline, index)?);
+            plates.push(insert_plate(&mut world, outline, index, settings.style)?);
         }
-        let beams = insert_beams(&mut world);
+        let beams = insert_beams(&mut world, settings.style);
         let mut engine = Self {
             world,
             domain,
@@ -396,7 +396,7 @@ fn shake(beam: usize, elapsed_s: f64) -> DVec2 {
     if vertical { DVec2::Y * speed } else { DVec2::X * speed }
 }
 
-fn insert_plate(world: &mut PhysicsWorld, outline: &[DVec2], index: usize) -> Option<RigidBodyHandle> {
+fn insert_plate(world: &mut PhysicsWorld, outline: &[DVec2], index: usize, style: Style) -> Option<RigidBodyHandle> {
     let center = partition::centroid(outline);
     let points = outline.iter().map(|&v| {
         let arm = v - center;
@@ -404,8 +404,8 @@ fn insert_plate(world: &mut PhysicsWorld, outline: &[DVec2], index: usize) -> Op
     });
     let collider = ColliderBuilder::convex_polyline(points.collect())?
         .density(1.0)
-        .friction(0.0)
-        .restitution(0.2)
+        .friction(style.friction())
+        .restitution(style.restitution())
         .active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS)
         .active_events(ActiveEvents::COLLISION_EVENTS)
         .user_data(index as u128);
@@ -413,18 +413,32 @@ fn insert_plate(world: &mut PhysicsWorld, outline: &[DVec2], index: usize) -> Op
     Some(world.insert(body, collider).0)
 }
 
-/// Beams along the four sides (north, south, west, east), just outside the square.
-fn insert_beams(world: &mut PhysicsWorld) -> Vec<(RigidBodyHandle, DVec2)> {
-    let out = SIDE_UNITS / 2.0 + BEAM_HALF;
+/// Beams along the four sides (north, south, west, east): just outside the square, or on its rim to shake what is inside.
+fn insert_beams(world: &mut PhysicsWorld, style: Style) -> Vec<(RigidBodyHandle, DVec2)> {
+    let out = SIDE_UNITS / 2.0 + if style == Style::Shaken { 0.0 } else { BEAM_HALF };
     let sides = [-DVec2::Y, DVec2::Y, -DVec2::X, DVec2::X];
     sides
         .into_iter()
         .map(|side| {
             let half = side.perp().abs() * (out + BEAM_HALF) + side.abs() * BEAM_HALF;
-            let collider =
-                ColliderBuilder::cuboid(half.x as f32, half.y as f32).friction(0.0).restitution(0.2).user_data(BEAM);
+            let collider = ColliderBuilder::cuboid(half.x as f32, half.y as f32)
+                .friction(style.friction())
+                .restitution(style.restitution())
+                .user_data(BEAM);
             let body = RigidBodyBuilder::kinematic_velocity_based().translation(vector(side * out));
             (world.insert(body, collider).0, -side)
         })
         .collect()
+}
+
+impl Style {
+    /// Friction of plates and beams: none where ours is the resistance, Box2D-like in the thesis's box.
+    fn friction(self) -> f32 {
+        if self == Style::Shaken { 0.5 } else { 0.0 }
+    }
+
+    /// Restitution of plates and beams; the thesis's is one half.
+    fn restitution(self) -> f32 {
+        if self == Style::Shaken { 0.5 } else { 0.2 }
+    }
 }

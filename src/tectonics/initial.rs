@@ -12,7 +12,7 @@ use crate::{
 use super::{
     domain::Domain,
     params::{PlateCrust, PlatesParams},
-    partition::Polygon,
+    partition::{self, Polygon},
     plate::Rock,
 };
 
@@ -33,21 +33,16 @@ const OLD_BELT_DRAWS: u64 = 40;
 
 /// Plate index of every tectonic cell for convex plates in engine units.
 pub fn owners_of(domain: &Domain, outlines: &[Polygon]) -> Vec<u8> {
-    let inside =
-        |outline: &Polygon, p: DVec2| super::partition::edges(outline).all(|(a, b)| (b - a).perp_dot(p - a) >= 0.0);
-    (0..domain.cells * domain.cells)
-        .map(|i| {
-            let at = domain.to_engine(domain.cell_center_m(i % domain.cells, i / domain.cells));
-            let found = outlines.iter().position(|outline| inside(outline, at));
-            // A centre that rounding leaves on no side of a cut goes to the nearest plate.
-            found.unwrap_or_else(|| nearest_outline(outlines, at)) as u8
-        })
-        .collect()
+    let n = domain.cells;
+    (0..n * n).map(|i| owner_at(outlines, domain.to_engine(domain.cell_center_m(i % n, i / n)))).collect()
 }
 
-fn nearest_outline(outlines: &[Polygon], at: DVec2) -> usize {
-    let distance = |o: &Polygon| super::partition::centroid(o).distance(at);
-    (0..outlines.len()).min_by(|&a, &b| distance(&outlines[a]).total_cmp(&distance(&outlines[b]))).unwrap_or(0)
+/// The convex plate at a point in engine units; the one with the nearest middle where there is none.
+pub fn owner_at(outlines: &[Polygon], at: DVec2) -> u8 {
+    let inside = |outline: &Polygon| partition::edges(outline).all(|(a, b)| (b - a).perp_dot(at - a) >= 0.0);
+    let distance = |plate: &usize| partition::centroid(&outlines[*plate]).distance(at);
+    let nearest = || (0..outlines.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    outlines.iter().position(inside).or_else(nearest).unwrap_or(0) as u8
 }
 
 /// The continents before the plates move, over the tectonic raster.

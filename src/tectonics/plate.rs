@@ -87,6 +87,8 @@ pub struct Plate {
     pub owned: Vec<bool>,
     /// Their rock; default where not owned.
     pub rock: Vec<Rock>,
+    /// Cells that it lost below another plate.
+    pub spent: Vec<bool>,
     /// First and last + 1 column and row that were ever owned.
     span: [[usize; 2]; 2],
 }
@@ -117,7 +119,7 @@ impl Plate {
         let corner = domain.corner_m + DVec2::new(low[0] as f64, low[1] as f64) * domain.cell_m() - pose.at_m;
         let frame = Frame { corner_m: corner, width, height, cell_m: domain.cell_m() };
         let (owned, rocks) = (vec![false; width * height], vec![Rock::default(); width * height]);
-        let mut plate = Self { pose, frame, owned, rock: rocks, span: [[width, 0], [height, 0]] };
+        let mut plate = Self { pose, frame, spent: owned.clone(), owned, rock: rocks, span: [[width, 0], [height, 0]] };
         for j in 0..height {
             for i in 0..width {
                 if own(low[0] + i, low[1] + j) {
@@ -140,6 +142,7 @@ impl Plate {
     /// Gives a cell up.
     pub fn give(&mut self, cell: usize) -> Rock {
         self.owned[cell] = false;
+        self.spent[cell] = true;
         std::mem::take(&mut self.rock[cell])
     }
 

@@ -18,7 +18,7 @@ use super::plate::{Plate, Rock};
 /// Draws a widest octave makes in one step; narrower ones make more, since their mosaics are cheaper to overlook.
 const DRAWS: usize = 1;
 /// Thickness below which crust is not stretched further, m.
-const THINNEST_M: f32 = 8_000.0;
+pub const THINNEST_M: f32 = 8_000.0;
 
 /// Widths and limits of the ranges.
 #[derive(Clone, Copy, Debug)]

@@ -3,6 +3,8 @@
 //! One geologic step is a few engine steps, so many that no two plates close more than about three tectonic cells.
 //! Crust is booked: what spreading, accretion and volcanoes make comes in, what sinks leaves, what collides is moved.
 
+use std::collections::BTreeMap;
+
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -27,6 +29,8 @@ const HIGHEST_VOLCANO_M: f32 = 3_500.0;
 const VOLCANO_LOSS: f32 = 0.07;
 /// Crust of gap cells beside a continent, as a share of the crust beside them.
 const STRETCHED: f32 = 0.45;
+/// Crust of a lower plate's ground that comes out again, as a share of the crust beside it.
+const BARED: f32 = 0.85;
 /// Continental crust thinner than this breaks: what opens beside it is ocean, m.
 const BREAKING_M: f32 = 17_000.0;
 /// Settings of a run in SI units and My.
@@ -104,6 +108,13 @@ pub struct Simulation {
 struct Pot {
     loser: usize,
     winner: usize,
+    volume_m3: f64,
+    points: Vec<DVec2>,
+}
+
+/// New cells of a continent that is torn in one place.
+#[derive(Clone, Debug, Default)]
+struct Rift {
     volume_m3: f64,
     points: Vec<DVec2>,
 }
@@ -227,50 +238,56 @@ impl Simulation {
 
     /// New crust in the gaps: ocean floor, or continent stretched out of the plate beside it.
     fn fill_gaps(&mut self) {
-        let area = self.domain.cell_m() * self.domain.cell_m();
         let n = self.domain.cells;
-        let mut rifts: Vec<(usize, f64, Vec<DVec2>)> = Vec::new();
+        let mut rifts: BTreeMap<(usize, i64, i64), Rift> = BTreeMap::new();
         for gap in exchange::gaps(&self.domain, &self.owners) {
             let at_m = self.domain.cell_center_m(gap.cell % n, gap.cell / n);
             let rim_m = self.domain.cell_center_m(gap.rim % n, gap.rim / n);
-            let time = self.time_myr as f32;
-            let plate = &mut self.plates[gap.plate];
-            let Some(cell) = plate.cell_under(at_m).filter(|&c| !plate.owned[c]) else { continue };
-            let rim = plate.owned_under(rim_m).map(|c| plate.rock[c]);
-            match rim.filter(|r| r.kind > 0.5 && r.crust_m > BREAKING_M) {
-                Some(rim) => {
-                    let crust_m = rim.crust_m * STRETCHED;
-                    plate.take(cell, Rock { crust_m, kind: rim.kind, born_myr: rim.born_myr, ..Rock::default() });
-                    let volume = crust_m as f64 * area;
-                    match rifts.iter_mut().find(|r| r.0 == gap.plate) {
-                        Some(rift) => {
-                            rift.1 += volume;
-                            rift.2.push(at_m);
-                        }
-                        None => rifts.push((gap.plate, volume, vec![at_m])),
-                    }
-                }
-                None => {
-                    let crust_m = crust::OCEAN_THICKNESS_M as f32;
-                    plate.take(cell, Rock { crust_m, born_myr: time, ..Rock::default() });
-                    self.books.made_m3 += crust_m as f64 * area;
-                }
+            if let Some(volume_m3) = self.fill_gap(gap.plate, at_m, rim_m) {
+                // One rift for each plate and neighbourhood: a plate may be torn on several sides.
+                let block = (at_m / (4.0 * self.rules.belt.half_width_m)).floor();
+                let rift = rifts.entry((gap.plate, block.x as i64, block.y as i64)).or_default();
+                rift.volume_m3 += volume_m3;
+                rift.points.push(at_m);
             }
         }
-        for (plate, volume_m3, points) in rifts {
-            self.stretch_out(plate, volume_m3, &points);
+        for (index, ((plate, ..), rift)) in rifts.into_iter().enumerate() {
+            self.stretch_out(plate, index as u64, &rift);
+        }
+    }
+
+    /// Gives a gap cell to a plate; returns the crust that must be stretched into it, if it is continental.
+    fn fill_gap(&mut self, plate: usize, at_m: DVec2, rim_m: DVec2) -> Option<f64> {
+        let area = self.domain.cell_m() * self.domain.cell_m();
+        // Ground that a plate lost below another one that has since moved on: no rift, the lower plate comes out again.
+        let bared = self.plates.iter().any(|p| p.cell_under(at_m).is_some_and(|c| p.spent[c]));
+        let plate = &mut self.plates[plate];
+        let cell = plate.cell_under(at_m).filter(|&c| !plate.owned[c])?;
+        let rim = plate.owned_under(rim_m).map(|c| plate.rock[c]);
+        match rim.filter(|r| r.kind > 0.5 && (bared || r.crust_m > BREAKING_M)) {
+            Some(rim) => {
+                let crust_m = rim.crust_m * if bared { BARED } else { STRETCHED };
+                plate.take(cell, Rock { crust_m, kind: rim.kind, born_myr: rim.born_myr, ..Rock::default() });
+                Some(crust_m as f64 * area)
+            }
+            None => {
+                let crust_m = crust::OCEAN_THICKNESS_M as f32;
+                plate.take(cell, Rock { crust_m, born_myr: self.time_myr as f32, ..Rock::default() });
+                self.books.made_m3 += crust_m as f64 * area;
+                None
+            }
         }
     }
 
     /// Takes the crust of new rift cells from the continent around them.
-    fn stretch_out(&mut self, plate: usize, volume_m3: f64, points: &[DVec2]) {
-        let path_m = raise::spine(points, self.rules.belt.half_width_m);
+    fn stretch_out(&mut self, plate: usize, index: u64, rift: &Rift) {
+        let path_m = raise::spine(&rift.points, self.rules.belt.half_width_m);
         let line = Line { path_m, lean: DVec2::ZERO, offset_m: 0.0, plates: [plate; 2], work: Work::Thin };
-        let key = self.key.named("rift").with(self.step).with(plate as u64);
+        let key = self.key.named("rift").with(self.step).with(index);
         let shares = raise::shares(&self.plates, &line, &self.rules.belt, key, &mut Brush::new());
-        let taken = self.apply(&shares, -volume_m3, |rock| (&mut rock.crust_m, f32::MAX));
+        let taken = self.apply(&shares, -rift.volume_m3, |rock| (&mut rock.crust_m, [raise::THINNEST_M, f32::MAX]));
         // What the draws could not find is booked as made: melt that fills the rift.
-        self.books.made_m3 += volume_m3 + taken;
+        self.books.made_m3 += rift.volume_m3 + taken;
     }
 
     fn read_stretches(&mut self, contacts: &[Contact]) {
@@ -312,7 +329,10 @@ impl Simulation {
             .collect();
         let thickest = self.rules.belt.thickest_m as f32;
         for ((_, volume, pot), shares) in jobs.into_iter().zip(&shares) {
-            let put = self.apply(shares, volume, |rock| (&mut rock.added_m, (thickest - rock.crust_m).max(0.0)));
+            let put = self.apply(shares, volume, |rock| {
+                let most = (thickest - rock.crust_m).max(0.0);
+                (&mut rock.added_m, [0.0, most])
+            });
             self.note_rates(shares, put);
             match pot {
                 // What found no room waits for the next step.
@@ -342,14 +362,14 @@ impl Simulation {
         Line { path_m, lean, offset_m: 0.0, plates: [pot.winner, pot.loser], work: Work::Thicken }
     }
 
-    /// Adds `volume_m3` to a part of the rock by shares, up to the part's limit; returns what the f32 state really took.
-    fn apply(&mut self, shares: &[Share], volume_m3: f64, part: impl Fn(&mut Rock) -> (&mut f32, f32)) -> f64 {
+    /// Adds `volume_m3` to a part of the rock by shares, within the part's limits; returns what the f32 state really took.
+    fn apply(&mut self, shares: &[Share], volume_m3: f64, part: impl Fn(&mut Rock) -> (&mut f32, [f32; 2])) -> f64 {
         let area = self.domain.cell_m() * self.domain.cell_m();
         let mut got = 0.0;
         for s in shares {
-            let (value, most) = part(&mut self.plates[s.plate].rock[s.cell]);
+            let (value, [least, most]) = part(&mut self.plates[s.plate].rock[s.cell]);
             let old = *value;
-            *value = ((old as f64 + volume_m3 * s.share / area) as f32).min(most.max(old));
+            *value = ((old as f64 + volume_m3 * s.share / area) as f32).clamp(least.min(old), most.max(old));
             got += *value as f64 - old as f64;
         }
         got * area
@@ -391,7 +411,7 @@ impl Simulation {
         for gains in gains {
             self.books.made_m3 += self.apply(&gains, area, |rock| {
                 let most = HIGHEST_VOLCANO_M - VOLCANO_LOSS * rock.added_m;
-                (&mut rock.edifice_m, most.max(0.0))
+                (&mut rock.edifice_m, [0.0, most.max(0.0)])
             });
         }
     }

@@ -349,10 +349,7 @@ fn thesis(params: &PlatesParams, map: Grid, key: Key) -> Result<Thesis, ProcessE
     let drives = vec![Drive::Mantle; outlines.len()];
     let engine = Engine::new(domain, &outlines, drives, mantle, settings(params, Style::Shaken))
         .ok_or_else(|| ProcessError::Unfit("a plate is too thin to move; ask for fewer plates".to_owned()))?;
-    let inside =
-        |p: DVec2| outlines.iter().position(|o| partition::edges(o).all(|(a, b)| (b - a).perp_dot(p - a) >= 0.0));
-    let ids =
-        Field::from_fn(map, |x, y| inside(domain.to_engine(map.center_m(x, y).into())).map_or(u8::MAX, |p| p as u8));
+    let ids = Field::from_fn(map, |x, y| initial::owner_at(&outlines, domain.to_engine(map.center_m(x, y).into())));
     Ok(Thesis::new(engine, ids.data, map, params, key))
 }
 

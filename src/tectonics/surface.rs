@@ -326,9 +326,9 @@ impl Detail {
     fn new(map: Grid, params: &PlatesParams, sea_m: f64, key: Key) -> Self {
         let belt_m = params.belt_km * 1e3;
         Self {
-            plains: Fbm::new(2.0 * belt_m, 0.6).octaves(key.named("plains"), map.cell_m),
+            plains: Fbm::new(2.0 * belt_m, 0.7).octaves(key.named("plains"), map.cell_m),
             ridges: Fbm::new(0.9 * belt_m, 0.9).octaves(key.named("ridges"), map.cell_m),
-            gullies: Gullies { wavelength_m: 0.3 * belt_m, octaves: 6, relief: 0.06, half_slope: 0.06 },
+            gullies: Gullies { wavelength_m: 0.3 * belt_m, octaves: 6, relief: 0.07, half_slope: 0.11 },
             gully_key: key.named("gullies"),
             cell_m: map.cell_m,
             sea_m,
