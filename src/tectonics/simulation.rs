@@ -243,10 +243,10 @@ impl Simulation {
         for gap in exchange::gaps(&self.domain, &self.owners) {
             let at_m = self.domain.cell_center_m(gap.cell % n, gap.cell / n);
             let rim_m = self.domain.cell_center_m(gap.rim % n, gap.rim / n);
-            if let Some(volume_m3) = self.fill_gap(gap.plate, at_m, rim_m) {
+            if let Some((plate, volume_m3)) = self.fill_gap(gap.plate, at_m, rim_m) {
                 // One rift for each plate and neighbourhood: a plate may be torn on several sides.
                 let block = (at_m / (4.0 * self.rules.belt.half_width_m)).floor();
-                let rift = rifts.entry((gap.plate, block.x as i64, block.y as i64)).or_default();
+                let rift = rifts.entry((plate, block.x as i64, block.y as i64)).or_default();
                 rift.volume_m3 += volume_m3;
                 rift.points.push(at_m);
             }
@@ -256,19 +256,20 @@ impl Simulation {
         }
     }
 
-    /// Gives a gap cell to a plate; returns the crust that must be stretched into it, if it is continental.
-    fn fill_gap(&mut self, plate: usize, at_m: DVec2, rim_m: DVec2) -> Option<f64> {
+    /// Gives a gap cell to a plate; returns which one, and the crust to be stretched into the cell, if it is continental.
+    fn fill_gap(&mut self, beside: usize, at_m: DVec2, rim_m: DVec2) -> Option<(usize, f64)> {
         let area = self.domain.cell_m() * self.domain.cell_m();
+        let rim = self.plates[beside].owned_under(rim_m).map(|c| self.plates[beside].rock[c]);
         // Ground that a plate lost below another one that has since moved on: no rift, the lower plate comes out again.
-        let bared = self.plates.iter().any(|p| p.cell_under(at_m).is_some_and(|c| p.spent[c]));
-        let plate = &mut self.plates[plate];
+        let bared = self.plates.iter().position(|p| p.cell_under(at_m).is_some_and(|c| p.spent[c] && !p.owned[c]));
+        let owner = bared.unwrap_or(beside);
+        let plate = &mut self.plates[owner];
         let cell = plate.cell_under(at_m).filter(|&c| !plate.owned[c])?;
-        let rim = plate.owned_under(rim_m).map(|c| plate.rock[c]);
-        match rim.filter(|r| r.kind > 0.5 && (bared || r.crust_m > BREAKING_M)) {
+        match rim.filter(|r| r.kind > 0.5 && (bared.is_some() || r.crust_m > BREAKING_M)) {
             Some(rim) => {
-                let crust_m = rim.crust_m * if bared { BARED } else { STRETCHED };
+                let crust_m = rim.crust_m * if bared.is_some() { BARED } else { STRETCHED };
                 plate.take(cell, Rock { crust_m, kind: rim.kind, born_myr: rim.born_myr, ..Rock::default() });
-                Some(crust_m as f64 * area)
+                Some((owner, crust_m as f64 * area))
             }
             None => {
                 let crust_m = crust::OCEAN_THICKNESS_M as f32;
