@@ -10,7 +10,7 @@ use glam::DVec2;
 use crate::noise::{Fbm, Key, Octaves};
 
 /// Wavelength of each link as a share of the map's longer side, and its displacement as a share of the bend asked for.
-const LINKS: [(f64, f64); 5] = [(0.85, 1.0), (0.36, 0.42), (0.15, 0.16), (0.06, 0.07), (0.025, 0.03)];
+const LINKS: [(f64, f64); 6] = [(0.85, 1.0), (0.36, 0.42), (0.15, 0.16), (0.06, 0.08), (0.026, 0.045), (0.011, 0.02)];
 /// Smallest area factor a link may have.
 const LEAST_DETERMINANT: f64 = 0.4;
 /// Points in a link's wavelength at which folding is looked for.
