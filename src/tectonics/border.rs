@@ -4,7 +4,6 @@ use glam::DVec2;
 
 use super::{
     contact::{Motion, classify},
-    exchange::NONE,
     simulation::Simulation,
     stretch::{Meeting, meeting},
 };
@@ -26,16 +25,17 @@ pub struct BorderCell {
 }
 
 /// Every cell whose eastern or southern neighbour belongs to another plate, in cell order.
-pub fn border_cells(run: &Simulation) -> Vec<BorderCell> {
+///
+/// `owner` has a plate everywhere: along a spreading border the plates themselves are a crack apart.
+pub fn border_cells(run: &Simulation, owner: &[u8]) -> Vec<BorderCell> {
     let n = run.domain.cells;
-    let top = &run.owners.top;
     let mut cells = Vec::new();
     for y in 0..n - 1 {
         for x in 0..n - 1 {
-            let a = top[y * n + x];
-            let b = [top[y * n + x + 1], top[(y + 1) * n + x]].into_iter().find(|&b| b != a && b != NONE);
-            if let Some(b) = b.filter(|_| a != NONE)
-                && let Some(cell) = border_cell(run, x, y, a as usize, b as usize)
+            let a = owner[y * n + x];
+            let b = [owner[y * n + x + 1], owner[(y + 1) * n + x]].into_iter().find(|&b| b != a);
+            if let Some(b) = b
+                && let Some(cell) = border_cell(run, owner, [x, y], [a as usize, b as usize])
             {
                 cells.push(cell);
             }
@@ -44,7 +44,7 @@ pub fn border_cells(run: &Simulation) -> Vec<BorderCell> {
     cells
 }
 
-fn border_cell(run: &Simulation, x: usize, y: usize, a: usize, b: usize) -> Option<BorderCell> {
+fn border_cell(run: &Simulation, owner: &[u8], [x, y]: [usize; 2], [a, b]: [usize; 2]) -> Option<BorderCell> {
     let n = run.domain.cells as isize;
     let mut across = DVec2::ZERO;
     for dy in -WINDOW..=WINDOW {
@@ -53,7 +53,7 @@ fn border_cell(run: &Simulation, x: usize, y: usize, a: usize, b: usize) -> Opti
             if i < 0 || j < 0 || i >= n || j >= n || dx * dx + dy * dy > WINDOW * WINDOW {
                 continue;
             }
-            let owner = run.owners.top[(j * n + i) as usize] as usize;
+            let owner = owner[(j * n + i) as usize] as usize;
             let offset = DVec2::new(dx as f64, dy as f64);
             if owner == a {
                 across -= offset;

@@ -33,7 +33,7 @@ pub enum Motion {
 }
 
 /// Slower than this a boundary is quiet, m/yr.
-const QUIET_M_PER_YR: f64 = 0.5e-3;
+const QUIET_M_PER_YR: f64 = 0.2e-3;
 /// Sine of the angle to the boundary above which closing or parting leads: 25 degrees.
 const OBLIQUE: f64 = 0.42;
 

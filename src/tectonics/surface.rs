@@ -21,6 +21,9 @@ use super::{
     warp::Warp,
 };
 
+/// Thickening that leaves a third of the smoothing of what lay there before, m.
+const STRENGTH_M: f32 = 8_000.0;
+
 /// What the map reads, on the tectonic raster.
 pub struct Surface {
     /// Height without the map's own detail, m.
@@ -61,7 +64,7 @@ impl Surface {
     pub fn of(run: &Simulation, params: &PlatesParams) -> Self {
         let grid = run.domain.grid();
         let (plate, rock) = ground(run);
-        let borders = border_cells(run);
+        let borders = border_cells(run, &plate);
         let base = Field::from_fn(grid, |x, y| {
             let r = &rock[grid.index(x, y)];
             crust::height_m(r.crust_m as f64, r.kind as f64, run.time_myr - r.born_myr as f64) as f32
@@ -73,11 +76,17 @@ impl Surface {
                 crust::height_m((r.crust_m + r.added_m) as f64, r.kind as f64, run.time_myr - r.born_myr as f64);
             whole as f32 - base.data[i] + r.edifice_m
         });
-        // The strength of the plates carries short loads: what the crust's thickness was at the start shows smoothed.
+        // The plates' strength carries short loads: what the crust was at the start shows smoothed, but not below the
+        // ranges raised since, whose height is their own.
         let stiff = blurred(&base, params.belt_km * 1e3 / 4.0);
         let shapes = blurred(&profiles(run, params, &borders, &plate, &rock), 1.5 * grid.cell_m);
         let mountain = blurred(&mountain, 0.7 * grid.cell_m);
-        let height = Field::from_fn(grid, |x, y| stiff.at(x, y) + shapes.at(x, y) + mountain.at(x, y));
+        let height = Field::from_fn(grid, |x, y| {
+            let i = grid.index(x, y);
+            let bent = stiff.data[i] - base.data[i];
+            let free = libm::expf(-rock[i].added_m / STRENGTH_M);
+            base.data[i] + bent * free + shapes.data[i] + mountain.data[i]
+        });
         let slope = [0, 1].map(|axis| Field::from_fn(grid, |x, y| height.gradient(x, y)[axis] as f32));
         let part = |f: fn(&Rock) -> f32| Field::from_fn(grid, |x, y| f(&rock[grid.index(x, y)]));
         let time = run.time_myr as f32;

@@ -126,7 +126,8 @@ impl World {
     /// Volume of rock in the column (bedrock, lava, sediment), m³, above the datum.
     pub fn rock_m3(&self) -> f64 {
         let sum: f64 = Layer::COLUMN.iter().filter_map(|&l| self.layer(l)).map(|f| sum_f64(&f.data)).sum();
-        sum * self.grid.cell_area_m2()
+        // An empty sum is -0.
+        (sum + 0.0) * self.grid.cell_area_m2()
     }
 
     /// The first stored layer and cell whose value is not finite.
