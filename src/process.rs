@@ -143,23 +143,33 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Blends `heights` into the bedrock over `base` (the bedrock before the stage) and books the change.
-    pub fn put(
-        &self,
-        base: &Field<f32>,
-        heights: &Field<f32>,
-        world: &mut World,
-        context: &Context,
-    ) -> Result<(), ProcessError> {
+    /// The ground as a stage finds it, mask and all. Evaluated once, before the stage changes what the mask looks at.
+    pub fn over(&self, world: &World) -> Result<Ground, ProcessError> {
+        let base = world.layer(Layer::Bedrock).cloned().unwrap_or_else(|| Field::filled(world.grid, 0.0));
         let mask = self.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
+        Ok(Ground { blend: self.blend, base, mask })
+    }
+}
+
+/// The bedrock before a stage, and how the stage's heights join it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ground {
+    /// Bedrock before the stage, m.
+    pub base: Field<f32>,
+    blend: Blend,
+    mask: Option<Field<f32>>,
+}
+
+impl Ground {
+    /// Writes the bedrock that these heights make over the base, and books the change.
+    pub fn put(&self, heights: &Field<f32>, world: &mut World, context: &Context) {
         let width = world.grid.width;
         let bedrock = world.layer_mut(Layer::Bedrock);
         let before = sum_f64(&bedrock.data);
-        let blend = self.blend;
         crate::grid::map_cells(&mut bedrock.data, width, |x, y| {
-            let old = base.at(x, y);
-            let new = blend.of(old, heights.at(x, y));
-            match &mask {
+            let old = self.base.at(x, y);
+            let new = self.blend.of(old, heights.at(x, y));
+            match &self.mask {
                 Some(mask) => old + (new - old) * mask.at(x, y),
                 None => new,
             }
@@ -170,6 +180,17 @@ impl Placement {
         } else {
             world.ledger.book_out(context.stage, Matter::Rock, -gained);
         }
-        Ok(())
+    }
+
+    /// The fields to be saved with a stage.
+    pub fn save(&self) -> Vec<(String, Field<f32>)> {
+        let mask = self.mask.iter().map(|mask| ("mask".to_owned(), mask.clone()));
+        std::iter::once(("base".to_owned(), self.base.clone())).chain(mask).collect()
+    }
+
+    /// The ground from saved fields; `None` where they lack it.
+    pub fn restore(blend: Blend, fields: &[(String, Field<f32>)]) -> Option<Self> {
+        let field = |wanted: &str| fields.iter().find(|(name, _)| name == wanted).map(|(_, field)| field.clone());
+        Some(Self { blend, base: field("base")?, mask: field("mask") })
     }
 }

@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::{
     grid::{Field, Grid},
     noise::Key,
-    process::{Context, Placement, Process, ProcessError, State, Step},
+    process::{Context, Ground, Placement, Process, ProcessError, State, Step},
     world::{Layer, Matter, Table, World},
 };
 
@@ -33,7 +33,7 @@ const THESIS_BLOCK: f64 = 0.9;
 impl PlatesParams {
     /// The stage as a process; `steps` asks for about that many instead of as many as the speed needs.
     pub fn process(self, placement: Placement, steps: Option<u64>) -> Box<dyn Process> {
-        Box::new(Stage { params: self, placement, steps, base: None, run: None, resume: None })
+        Box::new(Stage { params: self, placement, steps, ground: None, run: None, resume: None })
     }
 }
 
@@ -41,8 +41,8 @@ struct Stage {
     params: PlatesParams,
     placement: Placement,
     steps: Option<u64>,
-    /// Bedrock before the stage.
-    base: Option<Field<f32>>,
+    /// What the stage found.
+    ground: Option<Ground>,
     run: Option<Run>,
     resume: Option<Resume>,
 }
@@ -99,11 +99,11 @@ impl Process for Stage {
     }
 
     fn publish(&mut self, world: &mut World, context: &Context) -> Result<(), ProcessError> {
-        let (Some(run), Some(base)) = (&mut self.run, &self.base) else { return Ok(()) };
+        let (Some(run), Some(ground)) = (&mut self.run, &self.ground) else { return Ok(()) };
         match run {
-            Run::Geologic(run) => run.publish(&self.params, &self.placement, base, world, context)?,
+            Run::Geologic(run) => run.publish(&self.params, ground, world, context)?,
             Run::Thesis(run) => {
-                self.placement.put(base, &run.height, world, context)?;
+                ground.put(&run.height, world, context);
                 let grid = world.grid;
                 let ids = run.owners.iter().map(|&o| o as f32).collect();
                 world.set_layer(Layer::PlateId, Field { grid, data: ids });
@@ -124,7 +124,7 @@ impl Process for Stage {
         };
         let numbers = [booked.start_m3, booked.made_m3, booked.sunk_m3, booked.pending_m3];
         let blob = steps.to_le_bytes().into_iter().chain(numbers.into_iter().flat_map(f64::to_le_bytes)).collect();
-        State { fields: self.base.iter().map(|base| ("base".to_owned(), base.clone())).collect(), blob }
+        State { fields: self.ground.as_ref().map(Ground::save).unwrap_or_default(), blob }
     }
 
     fn restore(&mut self, state: State, _context: &Context) -> Result<(), ProcessError> {
@@ -133,7 +133,7 @@ impl Process for Stage {
         let number = |i: usize| word(i).map(f64::from_le_bytes).ok_or_else(broken);
         let steps = word(0).map(u64::from_le_bytes).ok_or_else(broken)?;
         let booked = Books { start_m3: number(1)?, made_m3: number(2)?, sunk_m3: number(3)?, pending_m3: number(4)? };
-        self.base = state.fields.into_iter().find(|(name, _)| name == "base").map(|(_, field)| field);
+        self.ground = Ground::restore(self.placement.blend, &state.fields);
         self.resume = Some(Resume { steps, booked });
         Ok(())
     }
@@ -142,8 +142,8 @@ impl Process for Stage {
 impl Stage {
     /// Sets the run up; a resumed one is replayed to where it stood, which gives the same bits.
     fn begin(&mut self, world: &mut World, context: &Context) -> Result<(), ProcessError> {
-        if self.base.is_none() {
-            self.base = Some(world.layer(Layer::Bedrock).cloned().unwrap_or_else(|| Field::filled(world.grid, 0.0)));
+        if self.ground.is_none() {
+            self.ground = Some(self.placement.over(world)?);
         }
         let mut run = match self.params.style {
             PlateStyle::Geologic => {
@@ -257,8 +257,7 @@ impl Geologic {
     fn publish(
         &mut self,
         params: &PlatesParams,
-        placement: &Placement,
-        base: &Field<f32>,
+        ground: &Ground,
         world: &mut World,
         context: &Context,
     ) -> Result<(), ProcessError> {
@@ -270,7 +269,7 @@ impl Geologic {
             params.land_share.map_or(world.sea_level_m, |share| surface.sea_level_for(map_m, &self.warp, share));
         for (layer, field) in surface.read(world.grid, &self.warp, params, sea_m, context.key.named("detail")) {
             match layer {
-                Layer::Bedrock => placement.put(base, &field, world, context)?,
+                Layer::Bedrock => ground.put(&field, world, context),
                 other => world.set_layer(other, field),
             }
         }

@@ -124,7 +124,8 @@ impl Surface {
                 *reading = self.read_cell(map.center_m(x, y).into(), warp, &detail, &mut ridges);
             }
         });
-        let layers: [(Layer, fn(&Reading) -> f32); 7] = [
+        type Part = fn(&Reading) -> f32;
+        let layers: [(Layer, Part); 7] = [
             (Layer::Bedrock, |r| r.height),
             (Layer::PlateId, |r| r.plate),
             (Layer::CrustKind, |r| r.kind),
@@ -231,7 +232,7 @@ fn profiles(
     let grid = run.domain.grid();
     let mut shape = Field::filled(grid, 0.0f32);
     let belt_m = params.belt_km * 1e3;
-    for meeting in [Meeting::Subduction, Meeting::Collision, Meeting::Spreading] {
+    for meeting in [Meeting::Subduction, Meeting::Collision, Meeting::Spreading, Meeting::Transform] {
         let mut at = vec![None; grid.cells()];
         for border in borders.iter().filter(|b| b.meeting == meeting) {
             at[border.cell] = Some(*border);
@@ -267,7 +268,8 @@ fn profile(meeting: Meeting, d: f64, under: bool, rock: &Rock, params: &PlatesPa
         Meeting::Collision => 0.0,
         // Graben and shoulders, in continents only: sea floor has its ridge from its age.
         Meeting::Spreading => land * (900.0 * bell(d - 42e3, 24e3) - 1300.0 * bell(d, 20e3)),
-        Meeting::Transform => 0.0,
+        // A valley along the fault.
+        Meeting::Transform => -200.0 * bell(d, 7e3),
     }
 }
 

@@ -69,10 +69,10 @@ impl<S: Shape> Process for Shaping<S> {
 
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
         context.check()?;
-        let ground = world.layer(Layer::Bedrock).cloned().unwrap_or_else(|| Field::filled(world.grid, 0.0));
-        let heights = self.shape.heights(&ground, context)?;
+        let ground = self.placement.over(world)?;
+        let heights = self.shape.heights(&ground.base, context)?;
         context.check()?;
-        self.placement.put(&ground, &heights, world, context)?;
+        ground.put(&heights, world, context);
         Ok(Step::WHOLE)
     }
 
