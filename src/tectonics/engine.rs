@@ -442,3 +442,7 @@ impl Style {
         if self == Style::Shaken { 0.5 } else { 0.2 }
     }
 }
+
+#[cfg(test)]
+#[path = "tests/bodies.rs"]
+mod bodies;

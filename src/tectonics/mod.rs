@@ -27,6 +27,8 @@ mod stage;
 mod stretch;
 mod surface;
 mod tables;
+#[cfg(test)]
+mod tests;
 mod thesis;
 mod warp;
 
