@@ -1,0 +1,199 @@
+//! One contract for every stage in the registry, none left out: it changes only the layers it declares and makes those,
+//! gives the same bits when it is stopped, saved and continued, ends with finite heights and with closed books.
+
+use std::{path::PathBuf, sync::atomic::AtomicBool};
+
+use upthrust::{
+    grid::Field,
+    process::{Context, Process},
+    recipe::{Overrides, Plan, Source, Stage, stage_kinds},
+    world::{Layer, Matter, World},
+};
+
+/// A stage to try: its kind, its parameters in TOML, and the layers it may declare without making them.
+struct Case {
+    kind: &'static str,
+    params: &'static str,
+    may_leave_out: &'static [Layer],
+}
+
+const fn case(kind: &'static str, params: &'static str) -> Case {
+    Case { kind, params, may_leave_out: &[] }
+}
+
+/// At least one for each kind. Masks that read the ground catch a stage that looks at its own results.
+const CASES: &[Case] = &[
+    case("plates", "cells = 96\ncount = 5\nduration_myr = 4.0\nsteps = 7\n"),
+    case("plates", "cells = 96\ncount = 5\nduration_myr = 4.0\nsteps = 7\nland_share = 0.4\nblend = 'add'\n"),
+    case("plates", "cells = 96\ncount = 5\nduration_myr = 4.0\nsteps = 7\nmask = 'height > 0'\n"),
+    Case {
+        kind: "plates",
+        params: "style = 'thesis'\ncount = 9\nduration_myr = 8.0\n",
+        // The thesis knows no crust and classifies no border.
+        may_leave_out: &[Layer::Uplift, Layer::CrustKind, Layer::CrustAge, Layer::CrustThickness, Layer::BoundaryKind],
+    },
+    case("fbm", ""),
+    case("fbm", "blend = 'add'\nmask = 'height > 0'\n"),
+    case("multifractal", ""),
+    case("warp", ""),
+    case("terrace", ""),
+    case("diamond_square", ""),
+    case("fault", "blend = 'add'\n"),
+    case("rmp_peak", "blend = 'max'\n"),
+    case("rmp_ridge", "mask = 'slope'\n"),
+    case("rmp_graph", "blend = 'min'\n"),
+];
+
+impl Case {
+    fn name(&self) -> String {
+        format!("{} {:?}", self.kind, self.params)
+    }
+
+    fn plan(&self) -> Plan {
+        // The first stage stands for whatever made the ground; only the second is run.
+        let text = format!(
+            "[world]\nseed = 3\nsize = [48, 40]\n[[stage]]\nid = 'ground'\nkind = 'fbm'\n[[stage]]\nid = 'own'\nkind = '{}'\n{}",
+            self.kind, self.params
+        );
+        let source = Source { name: "case".into(), file: "case.toml".into(), folder: PathBuf::new(), text };
+        Plan::new(&source, &Overrides::default()).unwrap_or_else(|e| panic!("{}: {e}", self.name()))
+    }
+}
+
+/// A world with something in every layer that can be stored.
+fn full_world(plan: &Plan) -> World {
+    let grid = plan.world.grid();
+    let mut world = World::new(grid, 0.0);
+    for (i, &layer) in Layer::ALL.iter().enumerate().filter(|(_, layer)| !layer.derived()) {
+        let wave = |x: usize, y: usize| ((x * 7 + y * 3 + i) % 11) as f32 / 11.0;
+        world.set_layer(layer, Field::from_fn(grid, wave));
+    }
+    let hills = |x: usize, y: usize| 900.0 * ((x as f32 * 0.21).sin() + (y as f32 * 0.17).cos());
+    world.set_layer(Layer::Bedrock, Field::from_fn(grid, hills));
+    world
+}
+
+/// Runs `process` from a step to the end and publishes there and after every step in `shown`; gives the steps taken.
+fn go(process: &mut dyn Process, world: &mut World, context: &Context, mut step: u64, shown: &[u64]) -> u64 {
+    loop {
+        step += 1;
+        if take(process, world, context, shown.contains(&step)) {
+            return step;
+        }
+    }
+}
+
+/// One step as the timeline takes it.
+fn take(process: &mut dyn Process, world: &mut World, context: &Context, show: bool) -> bool {
+    let step = process.step(world, context).unwrap();
+    world.time_yr += step.elapsed_yr;
+    if show || step.finished() {
+        process.publish(world, context).unwrap();
+    }
+    step.finished()
+}
+
+fn assert_only_declared(before: &World, after: &World, declared: &[Layer], name: &str) {
+    for &layer in Layer::ALL.iter().filter(|layer| !layer.derived() && !declared.contains(layer)) {
+        assert_eq!(before.layer(layer), after.layer(layer), "{name}: {} is not declared", layer.name());
+    }
+}
+
+fn assert_same_ground(a: &World, b: &World, what: &str) {
+    for ((layer, a), (_, b)) in a.layers().zip(b.layers()) {
+        let same = a.data.iter().zip(&b.data).all(|(a, b)| a.to_bits() == b.to_bits());
+        assert!(same, "{what}: {} differs", layer.name());
+    }
+    assert!(a.tables().eq(b.tables()), "{what}: a table differs");
+    assert_eq!(
+        (a.sea_level_m.to_bits(), a.time_yr.to_bits()),
+        (b.sea_level_m.to_bits(), b.time_yr.to_bits()),
+        "{what}"
+    );
+}
+
+fn keeps_the_contract(case: &Case, stage: &Stage, start: &World) {
+    let name = case.name();
+    let stay = AtomicBool::new(false);
+    let context = Context::new(3, &stage.key, &stay);
+    let mut world = start.clone();
+    world.ledger.open(&stage.key, Matter::Rock, world.rock_m3());
+    let opened = world.clone();
+
+    let mut process = stage.build().unwrap();
+    let steps = go(process.as_mut(), &mut world, &context, 0, &[]);
+    let declared = process.writes();
+    assert_only_declared(start, &world, declared, &name);
+    assert!(world.first_non_finite().is_none(), "{name}");
+    world.ledger.close(&stage.key, Matter::Rock, world.rock_m3());
+    for (_, matter, account) in world.ledger.accounts() {
+        assert!(account.residual_share() <= 1e-6, "{name}: {matter:?} {account:?}");
+    }
+
+    for stop in (0..steps).filter(|stop| [0, 1, steps / 2, steps - 1].contains(stop)) {
+        // The same frame in the middle, with and without an interruption after it.
+        let mut through = opened.clone();
+        go(stage.build().unwrap().as_mut(), &mut through, &context, 0, &[stop]);
+        let mut stopped = opened.clone();
+        let mut first = stage.build().unwrap();
+        for step in 1..=stop {
+            take(first.as_mut(), &mut stopped, &context, step == stop);
+            assert_only_declared(start, &stopped, declared, &name);
+        }
+        let saved = first.save();
+        drop(first);
+        let mut second = stage.build().unwrap();
+        second.restore(saved.clone(), &context).unwrap();
+        assert_eq!(second.save(), saved, "{name}: saved again after step {stop}");
+        go(second.as_mut(), &mut stopped, &context, stop, &[]);
+        assert_same_ground(&world, &through, &format!("{name}: a frame after step {stop}"));
+        assert_same_ground(&through, &stopped, &format!("{name}: stopped after step {stop}"));
+        assert_eq!(through.ledger, stopped.ledger, "{name}: stopped after step {stop}");
+    }
+}
+
+/// What a stage declares it makes, in a world that has only ground.
+fn makes_what_it_declares(case: &Case, stage: &Stage, start: &World) {
+    let stay = AtomicBool::new(false);
+    let context = Context::new(3, &stage.key, &stay);
+    let mut world = World::new(start.grid, 0.0);
+    world.set_layer(Layer::Bedrock, start.layer(Layer::Bedrock).unwrap().clone());
+    let mut process = stage.build().unwrap();
+    for &layer in process.reads() {
+        world.layer_mut(layer);
+    }
+    go(process.as_mut(), &mut world, &context, 0, &[]);
+    for &layer in process.writes() {
+        let made = world.layer(layer).is_some();
+        assert_eq!(made, !case.may_leave_out.contains(&layer), "{}: {}", case.name(), layer.name());
+    }
+    assert_ne!(world.layer(Layer::Bedrock), start.layer(Layer::Bedrock), "{}: nothing happened", case.name());
+}
+
+#[test]
+fn every_stage_keeps_the_contract() {
+    for kind in stage_kinds() {
+        let cases: Vec<&Case> = CASES.iter().filter(|case| case.kind == kind.kind).collect();
+        assert!(!cases.is_empty(), "the stage '{}' has no case in this test", kind.kind);
+        for case in cases {
+            let plan = case.plan();
+            let start = full_world(&plan);
+            keeps_the_contract(case, &plan.stages[1], &start);
+            makes_what_it_declares(case, &plan.stages[1], &start);
+        }
+    }
+    for case in CASES {
+        assert!(stage_kinds().iter().any(|kind| kind.kind == case.kind), "there is no stage '{}'", case.kind);
+    }
+}
+
+#[test]
+fn a_broken_state_is_refused() {
+    let case = &CASES[0];
+    let plan = case.plan();
+    let stay = AtomicBool::new(false);
+    let context = Context::new(3, "plates#1", &stay);
+    let mut process = plan.stages[1].build().unwrap();
+    let broken = upthrust::process::State { blob: vec![1, 2, 3], ..Default::default() };
+    assert!(process.restore(broken, &context).is_err());
+}
