@@ -1,0 +1,81 @@
+//! Another size is the same land, sharper or coarser (DESIGN.md's second promise).
+
+use upthrust::{recipe::presets, world::World};
+
+use super::grown;
+
+/// Cells a side to which heights are averaged before they are compared.
+const BLOCKS: usize = 128;
+
+/// Heights over the sea, averaged in blocks to 128 cells from west to east.
+fn averaged(world: &World) -> Vec<f64> {
+    let height = world.height();
+    let block = world.grid.width / BLOCKS;
+    let rows = world.grid.height / block;
+    let mut sums = vec![0.0; BLOCKS * rows];
+    for y in 0..rows * block {
+        for x in 0..BLOCKS * block {
+            sums[y / block * BLOCKS + x / block] += height.at(x, y) as f64 - world.sea_level_m;
+        }
+    }
+    sums.iter().map(|sum| sum / (block * block) as f64).collect()
+}
+
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+    let (ma, mb) = (mean(a), mean(b));
+    let sum = |f: &dyn Fn(f64, f64) -> f64| a.iter().zip(b).map(|(a, b)| f(a - ma, b - mb)).sum::<f64>();
+    sum(&|a, b| a * b) / (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt()
+}
+
+/// Land of both over land of either; 1 where there is none.
+fn land_overlap(a: &[f64], b: &[f64]) -> f64 {
+    let count = |f: &dyn Fn(bool, bool) -> bool| a.iter().zip(b).filter(|(a, b)| f(**a > 0.0, **b > 0.0)).count();
+    let either = count(&|a, b| a || b);
+    if either == 0 { 1.0 } else { count(&|a, b| a && b) as f64 / either as f64 }
+}
+
+fn assert_same_land(a: &World, b: &World, least_correlation: f64, what: &str) {
+    let (high_a, high_b) = (averaged(a), averaged(b));
+    let (correlation, overlap) = (correlation(&high_a, &high_b), land_overlap(&high_a, &high_b));
+    println!("{what}: correlation {correlation:.4}, land overlap {overlap:.4}");
+    assert!(correlation >= least_correlation, "{what}: heights correlate at {correlation:.4}");
+    assert!(overlap >= 0.9, "{what}: land overlaps at {overlap:.4}");
+}
+
+#[test]
+fn the_plates_make_the_same_land_at_every_size() {
+    let worlds: Vec<_> = ["256", "512", "1024", "2048"].map(|size| (size, grown("collision", size, None))).into();
+    for (i, (size, world)) in worlds.iter().enumerate() {
+        for (finer, other) in &worlds[i + 1..] {
+            assert_same_land(world, other, 0.95, &format!("collision at {size} and {finer}"));
+        }
+    }
+}
+
+#[test]
+fn every_preset_is_the_same_land_at_another_size() {
+    for preset in presets() {
+        let [coarse, fine] = ["256", "512"].map(|size| grown(preset.name, size, None));
+        assert_same_land(&coarse, &fine, 0.95, preset.name);
+    }
+}
+
+#[test]
+fn a_thumbnail_shows_its_world() {
+    for seed in [1, 2, 7, 19] {
+        let [thumbnail, world] = ["128", "1024"].map(|size| grown("collision", size, Some(seed)));
+        assert_same_land(&thumbnail, &world, 0.9, &format!("seed {seed} at 128 and 1024"));
+    }
+}
+
+#[test]
+fn a_map_need_not_be_square() {
+    for name in ["collision", "fbm-smooth", "diamond-square"] {
+        let [coarse, fine] = ["256x128", "512x256"].map(|size| grown(name, size, None));
+        assert_same_land(&coarse, &fine, 0.95, &format!("{name}, twice as wide as high"));
+        let [coarse, fine] = ["128x256", "256x512"].map(|size| grown(name, size, None));
+        assert_same_land(&coarse, &fine, 0.9, &format!("{name}, twice as high as wide"));
+    }
+}
