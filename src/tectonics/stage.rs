@@ -120,7 +120,7 @@ impl Process for Stage {
         let (steps, booked) = match &self.run {
             Some(Run::Geologic(run)) => (run.simulation.steps_done(), run.booked),
             Some(Run::Thesis(run)) => (run.progress().1, Books::default()),
-            None => (0, Books::default()),
+            None => self.resume.map_or((0, Books::default()), |resume| (resume.steps, resume.booked)),
         };
         let numbers = [booked.start_m3, booked.made_m3, booked.sunk_m3, booked.pending_m3];
         let blob = steps.to_le_bytes().into_iter().chain(numbers.into_iter().flat_map(f64::to_le_bytes)).collect();
@@ -134,7 +134,8 @@ impl Process for Stage {
         let steps = word(0).map(u64::from_le_bytes).ok_or_else(broken)?;
         let booked = Books { start_m3: number(1)?, made_m3: number(2)?, sunk_m3: number(3)?, pending_m3: number(4)? };
         self.ground = Ground::restore(self.placement.blend, &state.fields);
-        self.resume = Some(Resume { steps, booked });
+        // A run that was saved before its first step begins like any other.
+        self.resume = self.ground.is_some().then_some(Resume { steps, booked });
         Ok(())
     }
 }
