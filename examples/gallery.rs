@@ -23,8 +23,7 @@ const SIDE: usize = 512;
 const PANEL: usize = 360;
 const PANELS: usize = 6;
 const QUALITY: u8 = 85;
-const LAYERS: [Layer; 5] =
-    [Layer::PlateId, Layer::CrustAge, Layer::CrustThickness, Layer::Uplift, Layer::BoundaryKind];
+const LAYERS: [Layer; 5] = [Layer::PlateId, Layer::CrustAge, Layer::CrustThickness, Layer::Uplift, Layer::BoundaryKind];
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 

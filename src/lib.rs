@@ -9,7 +9,9 @@
 //! - [`terrain`], [`tectonics`]: the stages. They never import each other.
 //! - [`recipe`], [`timeline`]: a recipe becomes a checked plan, a plan becomes a world.
 //! - [`measure`], [`relief`], [`export`]: numbers, pictures and files of a world.
+//! - `render`: pictures on the graphics adapter (feature `render`).
 //! - [`job`], [`cli`]: recipe to files on a worker, and the command line.
+//! - `app`: the desktop application (feature `app`).
 
 #![warn(missing_docs)]
 
@@ -33,8 +35,14 @@ pub mod measure;
 
 pub mod relief;
 
+#[cfg(feature = "render")]
+pub mod render;
+
 pub mod export;
 
 pub mod job;
 
 pub mod cli;
+
+#[cfg(feature = "app")]
+pub mod app;

@@ -30,11 +30,8 @@ pub(crate) enum RawCommand {
     /// A picture of a world
     Render(RawRender),
     /// The desktop application
-    #[command(hide = true)]
-    App {
-        #[arg(hide = true, num_args = 0..)]
-        rest: Vec<String>,
-    },
+    #[command(hide = !cfg!(feature = "app"))]
+    App(RawApp),
 }
 
 /// `grow` as typed.
@@ -117,6 +114,16 @@ pub(crate) struct RawRender {
     /// Plate borders and motions over it
     #[arg(long)]
     pub overlay: bool,
+}
+
+/// `app` as typed.
+#[derive(Debug, Args)]
+pub(crate) struct RawApp {
+    /// The world to show: its folder, or the store in it
+    pub world: Option<PathBuf>,
+    /// Save a picture of the window (PNG) and close it
+    #[arg(long, value_name = "FILE")]
+    pub screenshot: Option<PathBuf>,
 }
 
 /// The command of this process; `None` if help or the version was asked for and printed.

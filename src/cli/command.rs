@@ -9,7 +9,7 @@ use crate::{
 
 use super::{
     CliError,
-    arguments::{RawCommand, RawGrow, RawInspect, RawParams},
+    arguments::{RawApp, RawCommand, RawGrow, RawInspect, RawParams},
 };
 
 /// The recipe of a bare `grow`.
@@ -23,6 +23,7 @@ pub(crate) enum Command {
     Params(Params),
     Inspect(RawInspect),
     Render(Picture),
+    App(RawApp),
 }
 
 /// What `grow` is to do.
@@ -76,12 +77,7 @@ impl Command {
                 let (world, file) = (raw.world, raw.file);
                 Command::Render(Picture { world, file, view: raw.view, overlay: raw.overlay })
             }
-            RawCommand::App { .. } if cfg!(feature = "app") => {
-                return wrong("the desktop application is not part of this version yet");
-            }
-            RawCommand::App { .. } => {
-                return wrong("this build lacks the desktop application; build it with --features app");
-            }
+            RawCommand::App(raw) => Command::App(raw),
         })
     }
 }

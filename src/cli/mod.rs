@@ -6,6 +6,7 @@
 
 mod arguments;
 mod command;
+mod desktop;
 mod grow;
 mod output;
 mod progress;
@@ -13,6 +14,7 @@ mod reference;
 mod world;
 
 use std::{
+    path::PathBuf,
     process::ExitCode,
     sync::{
         Arc,
@@ -20,7 +22,7 @@ use std::{
     },
 };
 
-use crate::{job::JobError, recipe::RecipeError};
+use crate::{job::JobError, recipe::RecipeError, world::World};
 
 use command::Command;
 use output::Output;
@@ -57,10 +59,22 @@ impl CliError {
     }
 }
 
-/// Runs the command line of this process.
-pub fn main() -> ExitCode {
+/// What the desktop application starts with.
+pub struct AppStart {
+    /// A world to show, with its name.
+    pub world: Option<(String, World)>,
+    /// Where to save a picture of the window before closing it, if only that is wanted.
+    pub screenshot: Option<PathBuf>,
+}
+
+/// What opens the desktop application; it says in one line why it cannot. The application knows the command line, not
+/// the other way round, so the binary brings the two together.
+pub type OpenApp = fn(AppStart) -> Result<(), String>;
+
+/// Runs the command line of this process; `app` opens the desktop application, in builds that have one.
+pub fn main(app: Option<OpenApp>) -> ExitCode {
     std::panic::set_hook(Box::new(|info| output::complain(&describe_panic(info))));
-    let code = std::panic::catch_unwind(|| match parse_and_run() {
+    let code = std::panic::catch_unwind(|| match parse_and_run(app) {
         Ok(()) => 0,
         Err(error) => {
             match &error {
@@ -74,9 +88,13 @@ pub fn main() -> ExitCode {
     ExitCode::from(code.unwrap_or(1))
 }
 
-fn parse_and_run() -> Result<(), CliError> {
+fn parse_and_run(app: Option<OpenApp>) -> Result<(), CliError> {
     let Some(command) = arguments::parse()? else { return Ok(()) };
-    let command = Command::validate(command)?;
+    let command = match Command::validate(command)? {
+        // It ends by its window, and by Ctrl-C at once.
+        Command::App(raw) => return desktop::open(raw, app),
+        command => command,
+    };
     let mut output = Output::stdout();
     let cancel = Arc::new(AtomicBool::new(false));
     let asked = Arc::clone(&cancel);
@@ -88,6 +106,7 @@ fn parse_and_run() -> Result<(), CliError> {
         Command::Params(what) => reference::params(&what, &mut output),
         Command::Inspect(inspect) => world::inspect(&inspect, &mut output),
         Command::Render(picture) => world::render(&picture, &mut output),
+        Command::App(raw) => desktop::open(raw, app),
     }
 }
 

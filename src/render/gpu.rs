@@ -1,0 +1,126 @@
+//! The adapter: opened without a window, and asked for what went wrong instead of letting it end the program.
+
+use wgpu::{Adapter, Device, ErrorFilter, Extent3d, Queue, Texture, TextureFormat};
+
+use super::RenderError;
+use crate::grid::{Field, Grid};
+
+/// An open graphics adapter.
+pub struct Gpu {
+    pub(super) device: Device,
+    pub(super) queue: Queue,
+    name: String,
+}
+
+impl Gpu {
+    /// Opens the strongest adapter there is; Mesa's software one counts.
+    pub fn open() -> Result<Self, RenderError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options)).map_err(|_| RenderError::NoAdapter)?;
+        Self::device(&adapter)
+    }
+
+    fn device(adapter: &Adapter) -> Result<Self, RenderError> {
+        let info = adapter.get_info();
+        let name = format!("{} ({})", info.name, info.backend);
+        // All that the adapter can: large worlds need large textures.
+        let wanted = wgpu::DeviceDescriptor { required_limits: adapter.limits(), ..Default::default() };
+        let opened = pollster::block_on(adapter.request_device(&wanted));
+        let (device, queue) =
+            opened.map_err(|e| RenderError::NoDevice { adapter: name.clone(), cause: e.to_string() })?;
+        Ok(Self { device, queue, name })
+    }
+
+    /// The adapter and the interface it is reached by.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Refuses a grid that its textures cannot hold.
+    pub(super) fn check_size(&self, grid: &Grid) -> Result<(), RenderError> {
+        let most = self.device.limits().max_texture_dimension_2d;
+        if grid.width.max(grid.height) <= most as usize {
+            return Ok(());
+        }
+        let adapter = self.name.clone();
+        Err(RenderError::TooLarge { width: grid.width, height: grid.height, adapter, most })
+    }
+
+    pub(super) fn failed(&self, cause: impl ToString) -> RenderError {
+        RenderError::Failed { adapter: self.name.clone(), cause: cause.to_string() }
+    }
+
+    /// Does work on the device; what the driver complains of becomes an error.
+    pub(super) fn checked<T>(&self, work: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
+        let scopes = [ErrorFilter::Internal, ErrorFilter::OutOfMemory, ErrorFilter::Validation]
+            .map(|filter| self.device.push_error_scope(filter));
+        let done = work();
+        // The last opened is closed first; the first complaint is the one to tell.
+        let complaints = scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop()));
+        match complaints.collect::<Vec<_>>().first() {
+            Some(complaint) => Err(self.failed(complaint)),
+            None => done,
+        }
+    }
+
+    /// A texture of one number a cell.
+    pub(super) fn texture(&self, grid: &Grid, label: &str, usage: wgpu::TextureUsages) -> Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: extent(grid),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: TextureFormat::R32Float,
+            usage,
+            view_formats: &[],
+        })
+    }
+
+    /// Copies a field into a texture of its size.
+    pub(super) fn upload(&self, field: &Field<f32>, texture: &Texture) {
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(field.grid.width as u32 * 4),
+            rows_per_image: None,
+        };
+        let bytes = bytemuck::cast_slice(&field.data);
+        self.queue.write_texture(texture.as_image_copy(), bytes, layout, extent(&field.grid));
+    }
+
+    /// Reads a texture of one number a cell back.
+    pub(super) fn download(&self, texture: &Texture, grid: Grid) -> Result<Field<f32>, RenderError> {
+        let tight = grid.width * 4;
+        let padded = tight.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read back"),
+            size: (padded * grid.height) as u64,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded as u32), rows_per_image: None };
+        let into = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), into, extent(&grid));
+        self.queue.submit([encoder.finish()]);
+        let (tell, hear) = std::sync::mpsc::channel();
+        buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
+            let _ = tell.send(mapped);
+        });
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| self.failed(e))?;
+        hear.recv().map_err(|e| self.failed(e))?.map_err(|e| self.failed(e))?;
+        let bytes = buffer.get_mapped_range(..).map_err(|e| self.failed(e))?;
+        let rows = bytes.chunks_exact(padded).flat_map(|row| row[..tight].chunks_exact(4));
+        let data = rows.map(|v| f32::from_ne_bytes([v[0], v[1], v[2], v[3]])).collect();
+        Ok(Field { grid, data })
+    }
+}
+
+fn extent(grid: &Grid) -> Extent3d {
+    Extent3d { width: grid.width as u32, height: grid.height as u32, depth_or_array_layers: 1 }
+}
