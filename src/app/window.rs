@@ -43,7 +43,10 @@ fn no_window(error: &eframe::Error) -> String {
              Debian and Ubuntu)"
         ),
         eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => {
-            format!("no window can be opened: {error}; the application needs a screen")
+            // What comes before is a place in the window library's source.
+            let text = error.to_string();
+            let why = text.rsplit_once(": ").map_or(text.as_str(), |(_, why)| why);
+            format!("no window can be opened: {}", why.trim_end_matches('.'))
         }
         _ => format!("no window can be opened: {error}"),
     }
