@@ -20,9 +20,11 @@ use upthrust::{
 /// Cells a side of the presets' worlds, and pixels of their maps.
 const SIDE: usize = 512;
 /// Cells a side of the worlds on sheets, and pixels of their panels.
-const PANEL: usize = 360;
+const PANEL: usize = 320;
 const PANELS: usize = 6;
 const QUALITY: u8 = 85;
+/// The repository stays small: a larger picture is encoded more coarsely.
+const MOST_BYTES: usize = 190_000;
 const LAYERS: [Layer; 5] = [Layer::PlateId, Layer::CrustAge, Layer::CrustThickness, Layer::Uplift, Layer::BoundaryKind];
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
@@ -54,8 +56,17 @@ struct Page {
 
 impl Page {
     fn draw(&self, name: &str, picture: &RgbImage) -> Outcome<()> {
-        let mut bytes = Vec::new();
-        JpegEncoder::new_with_quality(&mut bytes, QUALITY).encode_image(picture)?;
+        let encode = |quality: u8| -> Outcome<Vec<u8>> {
+            let mut bytes = Vec::new();
+            JpegEncoder::new_with_quality(&mut bytes, quality).encode_image(picture)?;
+            Ok(bytes)
+        };
+        let mut quality = QUALITY;
+        let mut bytes = encode(quality)?;
+        while bytes.len() > MOST_BYTES && quality > 50 {
+            quality -= 5;
+            bytes = encode(quality)?;
+        }
         println!("{name}: {} x {}, {} kB", picture.width(), picture.height(), bytes.len() / 1000);
         Ok(std::fs::write(self.folder.join(name).with_extension("jpg"), bytes)?)
     }
