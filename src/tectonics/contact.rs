@@ -96,6 +96,7 @@ mod tests {
         assert_eq!(classify(v(10.0, 0.0), n), Motion::Convergent);
         assert_eq!(classify(v(-10.0, 3.0), n), Motion::Divergent);
         assert_eq!(classify(v(1.0, 10.0), n), Motion::Transform);
-        assert_eq!(classify(v(0.2, 0.2), n), Motion::Quiet);
+        assert_eq!(classify(DVec2::splat(0.7 * QUIET_M_PER_YR), n), Motion::Quiet);
+        assert_eq!(classify(DVec2::splat(0.8 * QUIET_M_PER_YR), n), Motion::Convergent);
     }
 }
