@@ -28,11 +28,11 @@ fn neighbour(at: i32, step: i32, size: i32) -> i32 {
 }
 
 // Central differences, one-sided at a rim that does not wrap.
-fn slope(low: f32, high: f32, from: i32, to: i32) -> f32 {
-    if from == to {
+fn slope(low: f32, high: f32, before: i32, after: i32) -> f32 {
+    if before == after {
         return 0.0;
     }
-    let cells = select(2.0, f32(min(to - from, 2)), to > from);
+    let cells = select(2.0, f32(min(after - before, 2)), after > before);
     return (high - low) / cells * sun.per_cell;
 }
 
