@@ -138,7 +138,7 @@ impl fmt::Display for Inspection {
             None => writeln!(f)?,
         }
         if let Some(plates) = self.plates {
-            writeln!(f, "plates      {plates}")?;
+            writeln!(f, "plates      {plates} on the map")?;
         }
         for (name, curve) in [("whole map", &self.hypsometry), ("land", &self.land_hypsometry)] {
             if let Some(curve) = curve {
@@ -249,7 +249,9 @@ mod tests {
     fn the_report_reads_and_serializes() {
         let found = inspect(&world());
         let text = found.to_string();
-        for part in ["100 x 50 cells of 1000 m", "land 20.0 %", "plates      2", "hills rock", "unbooked", "bedrock"] {
+        for part in
+            ["100 x 50 cells of 1000 m", "land 20.0 %", "plates      2 on the map", "hills rock", "unbooked", "bedrock"]
+        {
             assert!(text.contains(part), "{part} missing in\n{text}");
         }
         let json = serde_json::to_value(&found).unwrap();

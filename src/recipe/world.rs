@@ -28,7 +28,7 @@ pub struct WorldParams {
     /// Height of the sea.
     #[schemars(range(min = -12000.0, max = 12000.0), extend("x-unit" = "m", "x-effect" = "less land"))]
     pub sea_level_m: f64,
-    /// What lies beyond the rim: matter leaves (open), nothing passes (closed), or a seamless world (wrap).
+    /// What lies beyond the rim: matter leaves (open), nothing passes (closed), or east meets west and north meets south (wrap; stages make no seamless land of their own yet).
     #[schemars(schema_with = "edges_schema")]
     pub edges: Edges,
 }

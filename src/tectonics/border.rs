@@ -20,8 +20,8 @@ pub struct BorderCell {
     pub under: usize,
     /// What happens.
     pub meeting: Meeting,
-    /// Speed across the border: closing positive, m/yr.
-    pub closing_m_per_yr: f64,
+    /// Speed that matters there: across the border, or along a transform, m/yr.
+    pub speed_m_per_yr: f64,
 }
 
 /// Every cell whose eastern or southern neighbour belongs to another plate, in cell order.
@@ -65,7 +65,6 @@ fn border_cell(run: &Simulation, owner: &[u8], [x, y]: [usize; 2], [a, b]: [usiz
     let normal = across.try_normalize()?;
     let at_m = run.domain.cell_center_m(x, y);
     let relative = run.engine.velocity_at(a, at_m) - run.engine.velocity_at(b, at_m);
-    let closing_m_per_yr = relative.dot(normal);
     let cell = y * run.domain.cells + x;
     // Rock a few cells to either side, clear of the ragged rim.
     let aside = normal * (3.0 * run.domain.cell_m());
@@ -76,5 +75,6 @@ fn border_cell(run: &Simulation, owner: &[u8], [x, y]: [usize; 2], [a, b]: [usiz
         Motion::Transform => (a, b, Meeting::Transform),
         Motion::Convergent => meeting((a, &rock(a, at_m - aside)?), (b, &rock(b, at_m + aside)?), &run.polarity),
     };
-    Some(BorderCell { cell, under, meeting, closing_m_per_yr })
+    let speed_m_per_yr = if meeting == Meeting::Transform { relative.length() } else { relative.dot(normal).abs() };
+    Some(BorderCell { cell, under, meeting, speed_m_per_yr })
 }

@@ -5,7 +5,8 @@
 //! nothing. What holds them is a force of ours that grows with their overlap; beams stay solid. The thesis's own style
 //! keeps all contacts solid.
 //!
-//! Stability: drag is explicit, `drag_per_s · dt` = 0.13 < 0.5; speeds are bounded by the mantle's.
+//! Stability: drag is explicit, `drag_per_s · dt` is at most 0.13 < 0.5; speeds are bounded by the drives', and a drive of
+//! its own may be ten times the plate speed at most.
 
 use std::sync::Mutex;
 
@@ -106,6 +107,8 @@ pub struct Engine {
     beams: Vec<(RigidBodyHandle, DVec2)>,
     mantle: Mantle,
     elapsed_s: f64,
+    /// Engine time of one step, s.
+    dt: f64,
     /// Overlap of each pair when the run began (painted plates start overlapped), m.
     start_overlap_m: Vec<(usize, usize, f64)>,
     /// Collisions that began since they were last asked for.
@@ -184,6 +187,7 @@ impl Engine {
             beams,
             mantle,
             elapsed_s: 0.0,
+            dt: DT,
             start_overlap_m: Vec::new(),
             begun: Vec::new(),
         };
@@ -196,9 +200,18 @@ impl Engine {
         Some(engine)
     }
 
+    /// Makes a whole number of steps last exactly `duration_yr`, none longer than the engine's own; returns that number.
+    pub fn fit(&mut self, duration_yr: f64) -> u64 {
+        let total_s = duration_yr / self.yr_per_s();
+        let steps = (total_s / DT).ceil().max(1.0);
+        self.dt = total_s / steps;
+        self.world.integration_parameters.dt = self.dt as f32;
+        steps as u64
+    }
+
     /// Years in one engine step.
     pub fn step_yr(&self) -> f64 {
-        DT * self.yr_per_s()
+        self.dt * self.yr_per_s()
     }
 
     fn yr_per_s(&self) -> f64 {
@@ -233,7 +246,7 @@ impl Engine {
             begun.sort_by(|a, b| a[0].x.total_cmp(&b[0].x).then(a[0].y.total_cmp(&b[0].y)));
             self.begun.extend(begun);
         }
-        self.elapsed_s += DT;
+        self.elapsed_s += self.dt;
         if self.start_overlap_m.is_empty() {
             self.start_overlap_m = self.contacts().iter().map(|c| (c.plates[0], c.plates[1], c.overlap_m)).collect();
         }
@@ -374,7 +387,7 @@ impl Engine {
         for (index, &(handle, inward)) in self.beams.iter().enumerate() {
             let velocity = match self.settings.style {
                 Style::Overriding => {
-                    // Neighbouring sides a quarter period apart, so that they stir.
+                    // Each side a quarter period behind the one before, so that they stir.
                     let phase = std::f64::consts::TAU * (self.elapsed_s / BEAM_PERIOD_S + 0.25 * index as f64);
                     inward * (std::f64::consts::TAU / BEAM_PERIOD_S * BEAM_SWING * libm::sin(phase))
                 }
@@ -397,6 +410,9 @@ fn shake(beam: usize, elapsed_s: f64) -> DVec2 {
 }
 
 fn insert_plate(world: &mut PhysicsWorld, outline: &[DVec2], index: usize, style: Style) -> Option<RigidBodyHandle> {
+    if outline.len() < 3 {
+        return None;
+    }
     let center = partition::centroid(outline);
     let points = outline.iter().map(|&v| {
         let arm = v - center;

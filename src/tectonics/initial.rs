@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::{
     crust,
     grid::{Field, nearest_feature},
-    noise::{Fbm, Key},
+    noise::{Fbm, Key, smoothstep},
     rmp::{self, Brush},
 };
 
@@ -29,7 +29,7 @@ const OCEAN_AGE_MYR: [f64; 2] = [15.0, 120.0];
 /// Thickness that an old belt added at its crest, m: worn to about a kilometre.
 const OLD_BELT_M: f64 = 6_500.0;
 /// Mosaics drawn for one old belt: many, so that no step of a single draw is left.
-const OLD_BELT_DRAWS: u64 = 40;
+const OLD_BELT_DRAWS: u64 = 27;
 
 /// Plate index of every tectonic cell for convex plates in engine units.
 pub fn owners_of(domain: &Domain, outlines: &[Polygon]) -> Vec<u8> {
@@ -70,11 +70,6 @@ pub fn continents(domain: &Domain, params: &PlatesParams, painted: Option<&Field
     let slope = params.shelf_km * 1e3;
     let kind = inward_m.map(|d| smoothstep(1.0 + d as f64 / slope) as f32);
     Continents { kind, inward_m }
-}
-
-fn smoothstep(t: f64) -> f64 {
-    let t = t.clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }
 
 /// Continents as the highest share of a fractal sum over the map.

@@ -55,6 +55,12 @@ pub fn plates(domain: &Domain, warp: &Warp, path: &str) -> Result<(Vec<u8>, usiz
         let colour = picture.get_pixel(px, py).0;
         (0..kept.len()).min_by_key(|&k| distance(kept[k].0, colour)).unwrap_or(0) as u8
     });
+    if let Some(lost) = (0..kept.len()).find(|&k| !owners.data.contains(&(k as u8))) {
+        let [r, g, b] = kept[lost].0;
+        return Err(unfit(format!(
+            "{path}: the plate coloured #{r:02x}{g:02x}{b:02x} is too thin; draw it broader or raise cells"
+        )));
+    }
     Ok((owners.data, kept.len()))
 }
 

@@ -55,13 +55,13 @@ impl Default for PlateEntry {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PlatesParams {
-    /// Number of plates the square is cut into.
+    /// Number of plates the square is cut into; about that many in the thesis style.
     #[schemars(range(min = 2, max = 60), extend("x-unit" = "1", "x-effect" = "more and smaller plates, more ranges"))]
     pub count: u32,
     /// How long the plates move.
     #[schemars(range(min = 0.01, max = 500.0), extend("x-unit" = "My", "x-effect" = "more convergence, higher and wider ranges"))]
     pub duration_myr: f64,
-    /// Typical speed of a plate; two that meet close at up to twice this.
+    /// Typical (root mean square) speed of the mantle below the plates; two plates that meet close at about twice this.
     #[schemars(range(min = 0.1, max = 200.0), extend("x-unit" = "mm/yr", "x-effect" = "more convergence in the same time"))]
     pub speed_mm_per_yr: f64,
     /// Share of straight closing in the mantle's flow: 1 closing, 0 stirring, -1 opening.

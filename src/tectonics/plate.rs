@@ -112,18 +112,20 @@ impl Plate {
                 }
             }
         }
-        let room = (reach_m / domain.cell_m()).ceil() as usize;
-        let low = low.map(|v| v.min(n - 1).saturating_sub(room));
-        let high = high.map(|v| (v.max(1) + room).min(n));
-        let (width, height) = (high[0].max(low[0] + 1) - low[0], high[1].max(low[1] + 1) - low[1]);
-        let corner = domain.corner_m + DVec2::new(low[0] as f64, low[1] as f64) * domain.cell_m() - pose.at_m;
+        // The raster may reach beyond the square: a plate that leaves the rim makes new crust behind it.
+        let room = (reach_m / domain.cell_m()).ceil().min(n as f64) as usize;
+        let low = low.map(|v| v.min(n - 1));
+        let high = [0, 1].map(|axis| high[axis].max(low[axis] + 1));
+        let [width, height] = [0, 1].map(|axis| high[axis] - low[axis] + 2 * room);
+        let corner_cells = DVec2::new(low[0] as f64, low[1] as f64) - room as f64;
+        let corner = domain.corner_m + corner_cells * domain.cell_m() - pose.at_m;
         let frame = Frame { corner_m: corner, width, height, cell_m: domain.cell_m() };
         let (owned, rocks) = (vec![false; width * height], vec![Rock::default(); width * height]);
         let mut plate = Self { pose, frame, spent: owned.clone(), owned, rock: rocks, span: [[width, 0], [height, 0]] };
-        for j in 0..height {
-            for i in 0..width {
-                if own(low[0] + i, low[1] + j) {
-                    plate.take(j * width + i, rock(low[0] + i, low[1] + j));
+        for y in low[1]..high[1] {
+            for x in low[0]..high[0] {
+                if own(x, y) {
+                    plate.take((y - low[1] + room) * width + x - low[0] + room, rock(x, y));
                 }
             }
         }
@@ -167,11 +169,10 @@ impl Plate {
     }
 
     /// Rock between cell centres, from the owned ones of the four around; `None` where none is owned.
-    pub fn sample(&self, at_m: DVec2) -> Option<Rock> {
+    pub fn sample(&self, at_m: DVec2, time_myr: f32) -> Option<Rock> {
         let at = self.frame.to_cells(self.pose.to_body(at_m)) - 0.5;
         let (base, f) = (at.floor(), at - at.floor());
         let mut sum = [0.0f64; 6];
-        let mut rated_myr = f32::NEG_INFINITY;
         let mut weight = 0.0;
         for (dx, dy, w) in [
             (0.0, 0.0, (1.0 - f.x) * (1.0 - f.y)),
@@ -181,16 +182,16 @@ impl Plate {
         ] {
             let Some(i) = self.frame.cell_at(base + DVec2::new(dx, dy)).filter(|&i| self.owned[i]) else { continue };
             let r = &self.rock[i];
-            for (s, v) in sum.iter_mut().zip([r.crust_m, r.added_m, r.edifice_m, r.kind, r.born_myr, r.rate_m_per_myr])
+            for (s, v) in
+                sum.iter_mut().zip([r.crust_m, r.added_m, r.edifice_m, r.kind, r.born_myr, r.rate_at(time_myr)])
             {
                 *s += w * v as f64;
             }
             weight += w;
-            rated_myr = rated_myr.max(r.rated_myr);
         }
         (weight > 1e-9).then(|| {
             let [crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr] = sum.map(|s| (s / weight) as f32);
-            Rock { crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr, rated_myr }
+            Rock { crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr, rated_myr: time_myr }
         })
     }
 

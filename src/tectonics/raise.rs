@@ -15,7 +15,7 @@ use crate::{
 
 use super::plate::{Plate, Rock};
 
-/// Draws a widest octave makes in one step; narrower ones make more, since their mosaics are cheaper to overlook.
+/// Draws that an octave makes in one step; a run of dozens of steps adds up to what is smooth.
 const DRAWS: usize = 1;
 /// Thickness below which crust is not stretched further, m.
 pub const THINNEST_M: f32 = 8_000.0;

@@ -1,6 +1,6 @@
 //! The run of the plates: bodies move, ownership follows, crust is made, lost, thickened and thinned.
 //!
-//! One geologic step is a few engine steps, so many that no two plates close more than about three tectonic cells.
+//! One geologic step is a few engine steps, so many that no two plates close more than about three and a half tectonic cells.
 //! Crust is booked: what spreading, accretion and volcanoes make comes in, what sinks leaves, what collides is moved.
 
 use std::collections::BTreeMap;
@@ -22,7 +22,7 @@ use super::{
 };
 
 /// Cells that two plates may close in one step at twice the plate speed; an exchange takes three.
-const CELLS_PER_STEP: f64 = 3.0;
+const CELLS_PER_STEP: f64 = 3.5;
 /// Height at which a volcano on sea floor grows no more, m.
 const HIGHEST_VOLCANO_M: f32 = 3_500.0;
 /// How much lower it stays for each metre of crust that was added below it: high ground bears lower cones.
@@ -46,6 +46,8 @@ pub struct Rules {
     pub volcano_m_per_myr: f64,
     /// Speed at which volcanoes grow at that rate, m/yr.
     pub speed_m_per_yr: f64,
+    /// The fastest plate's own speed, m/yr.
+    pub fastest_m_per_yr: f64,
     /// Length of the run, My.
     pub duration_myr: f64,
     /// Steps asked for, instead of as many as the speed needs.
@@ -102,6 +104,9 @@ pub struct Simulation {
     step: u64,
     steps: u64,
     engine_steps: u64,
+    /// Engine steps in all, and taken.
+    in_all: u64,
+    done: u64,
 }
 
 #[derive(Clone, Debug)]
@@ -121,18 +126,19 @@ struct Rift {
 
 impl Simulation {
     /// A run ready for its first step.
-    pub fn new(domain: Domain, plates: Vec<Plate>, engine: Engine, rules: Rules, key: Key) -> Self {
+    pub fn new(domain: Domain, plates: Vec<Plate>, mut engine: Engine, rules: Rules, key: Key) -> Self {
         let polarity = Polarity::of(&plates);
         let owners = exchange::compose(&domain, &plates, &polarity);
         let books = Books { start_m3: plates.iter().map(Plate::crust_m3).sum(), ..Books::default() };
         // A plate moves a thirtieth of a unit an engine step at the plate speed; two that meet, twice that.
-        let cells_per_step = 2.0 * engine.step_yr() * rules.speed_m_per_yr / domain.cell_m();
-        let in_all = rules.duration_myr * 1e6 / engine.step_yr();
+        let in_all = engine.fit(rules.duration_myr * 1e6);
+        let cells_per_step = 2.0 * engine.step_yr() * rules.fastest_m_per_yr / domain.cell_m();
         let engine_steps = match rules.steps {
-            Some(steps) => (in_all / steps.max(1) as f64).round().max(1.0) as u64,
+            Some(steps) => in_all.div_ceil(steps.max(1)),
             None => ((CELLS_PER_STEP / cells_per_step) as u64).max(1),
         };
-        let steps = (in_all / engine_steps as f64).round().max(1.0) as u64;
+        let engine_steps = engine_steps.min(in_all);
+        let steps = in_all.div_ceil(engine_steps);
         let grips = vec![Grip::default(); plates.len() * plates.len()];
         Self {
             domain,
@@ -151,6 +157,8 @@ impl Simulation {
             step: 0,
             steps,
             engine_steps,
+            in_all,
+            done: 0,
         }
     }
 
@@ -171,9 +179,9 @@ impl Simulation {
 
     /// One geologic step.
     pub fn advance(&mut self) {
+        let before = self.time_myr;
         let contacts = self.move_plates();
-        let step_myr = self.step_myr();
-        self.time_myr += step_myr;
+        let step_myr = self.time_myr - before;
         for (plate, pose) in (0..self.plates.len()).map(|p| (p, self.engine.pose(p))) {
             self.plates[plate].pose = pose;
         }
@@ -187,15 +195,11 @@ impl Simulation {
         self.step += 1;
     }
 
-    fn step_myr(&self) -> f64 {
-        self.engine.step_yr() * self.engine_steps as f64 * 1e-6
-    }
-
     /// Runs the engine, adds up what each pair closed, and returns the last contacts.
     fn move_plates(&mut self) -> Vec<Contact> {
         let n = self.plates.len();
         let mut contacts = Vec::new();
-        for _ in 0..self.engine_steps {
+        for _ in 0..self.engine_steps.min(self.in_all - self.done) {
             let grips = &self.grips;
             self.engine.step(|a, b| grips[a * n + b]);
             contacts = self.engine.contacts();
@@ -206,7 +210,9 @@ impl Simulation {
                     Err(at) => self.closings.insert(at, Closing { plates: contact.plates, closed_m: closed }),
                 }
             }
+            self.done += 1;
         }
+        self.time_myr = self.rules.duration_myr * (self.done as f64 / self.in_all as f64);
         contacts
     }
 
@@ -334,7 +340,6 @@ impl Simulation {
                 let most = (thickest - rock.crust_m).max(0.0);
                 (&mut rock.added_m, [0.0, most])
             });
-            self.note_rates(shares, put);
             match pot {
                 // What found no room waits for the next step.
                 Some(pot) => {
@@ -366,23 +371,18 @@ impl Simulation {
     /// Adds `volume_m3` to a part of the rock by shares, within the part's limits; returns what the f32 state really took.
     fn apply(&mut self, shares: &[Share], volume_m3: f64, part: impl Fn(&mut Rock) -> (&mut f32, [f32; 2])) -> f64 {
         let area = self.domain.cell_m() * self.domain.cell_m();
+        let time = self.time_myr as f32;
         let mut got = 0.0;
         for s in shares {
-            let (value, [least, most]) = part(&mut self.plates[s.plate].rock[s.cell]);
+            let rock = &mut self.plates[s.plate].rock[s.cell];
+            let (value, [least, most]) = part(rock);
             let old = *value;
             *value = ((old as f64 + volume_m3 * s.share / area) as f32).clamp(least.min(old), most.max(old));
-            got += *value as f64 - old as f64;
+            let gained = *value as f64 - old as f64;
+            rock.note_rate(gained as f32, time);
+            got += gained;
         }
         got * area
-    }
-
-    fn note_rates(&mut self, shares: &[Share], volume_m3: f64) {
-        let area = self.domain.cell_m() * self.domain.cell_m();
-        let time = self.time_myr as f32;
-        for s in shares {
-            let gained = volume_m3 * s.share / area;
-            self.plates[s.plate].rock[s.cell].note_rate(gained as f32, time);
-        }
     }
 
     /// Grows the volcanoes of all arcs.

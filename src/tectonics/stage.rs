@@ -209,6 +209,7 @@ fn settings(params: &PlatesParams, style: Style) -> Settings {
 impl Geologic {
     fn new(params: &PlatesParams, steps: Option<u64>, map: Grid, key: Key) -> Result<Self, ProcessError> {
         let domain = Domain::around(&map, params.margin, params.cells as usize);
+        check(params, &domain)?;
         let warp = Warp::new(domain.map_m, params.bend, key.named("warp"));
         let (owners, outlines) = match &params.map {
             Some(path) => {
@@ -229,7 +230,7 @@ impl Geologic {
         let engine = Engine::new(domain, &outlines, drives, mantle, settings(params, Style::Overriding))
             .ok_or_else(|| ProcessError::Unfit("a plate is too thin to move; draw it broader".to_owned()))?;
         // Room for what a plate may win or move in the run.
-        let reach_m = 2.0 * params.speed_mm_per_yr * 1e3 * params.duration_myr;
+        let reach_m = 1.5 * fastest(params) * 1e3 * params.duration_myr;
         let n = domain.cells;
         let plates: Vec<Plate> = (0..outlines.len())
             .map(|p| {
@@ -286,6 +287,45 @@ impl Geologic {
     }
 }
 
+/// The fastest plate's own speed, mm/yr.
+fn fastest(params: &PlatesParams) -> f64 {
+    params.plate.iter().map(|entry| entry.speed_mm_per_yr).fold(params.speed_mm_per_yr, f64::max)
+}
+
+/// Parameters that are sound one by one may not go together, or not with this map.
+fn check(params: &PlatesParams, domain: &Domain) -> Result<(), ProcessError> {
+    let unfit = |text: String| Err(ProcessError::Unfit(text));
+    let (side_km, cell_km) = (domain.side_m / 1e3, domain.cell_m() / 1e3);
+    let drift_km = fastest(params) * params.duration_myr;
+    if drift_km > side_km {
+        return unfit(format!(
+            "plates would drift {drift_km:.0} km, across the whole square of {side_km:.0} km; lower duration_myr or the speed"
+        ));
+    }
+    if let Some(index) = params.plate.iter().position(|p| p.speed_mm_per_yr > 10.0 * params.speed_mm_per_yr) {
+        return unfit(format!(
+            "plate {}: faster than ten times the stage's speed_mm_per_yr; raise that too",
+            index + 1
+        ));
+    }
+    if params.style == PlateStyle::Thesis {
+        return Ok(());
+    }
+    // Finer than the tectonic cells nothing can be raised; wider than a sixth of the square all is one range.
+    let least = 1.5 * cell_km;
+    let bounds =
+        [("belt_km", params.belt_km, side_km / 6.0), ("volcano_spacing_km", params.volcano_spacing_km, f64::MAX)];
+    match bounds.into_iter().find(|(_, km, most)| !(least..=*most).contains(km)) {
+        Some((name, km, most)) if km > most => {
+            unfit(format!("{name} = {km} is too wide for this map; at most {most:.1} (lower it or raise extent_km)"))
+        }
+        Some((name, km, _)) => unfit(format!(
+            "{name} = {km} is finer than the tectonic cells resolve; at least {least:.2} (raise it or cells)"
+        )),
+        None => Ok(()),
+    }
+}
+
 fn rules(params: &PlatesParams, steps: Option<u64>) -> Rules {
     Rules {
         belt: Belt {
@@ -298,6 +338,7 @@ fn rules(params: &PlatesParams, steps: Option<u64>) -> Rules {
         accretion_m: params.accretion_km * 1e3,
         volcano_m_per_myr: params.volcano_m_per_myr,
         speed_m_per_yr: params.speed_mm_per_yr * 1e-3,
+        fastest_m_per_yr: fastest(params) * 1e-3,
         duration_myr: params.duration_myr,
         steps,
     }
@@ -341,6 +382,7 @@ fn drives(
 
 fn thesis(params: &PlatesParams, map: Grid, key: Key) -> Result<Thesis, ProcessError> {
     let domain = Domain::around(&map, params.margin, params.cells as usize);
+    check(params, &domain)?;
     let square: Polygon = domain.square_engine().into_iter().map(|v| v * THESIS_BLOCK).collect();
     // Chords cross: about (count - 1) / 3 of them make `count` plates.
     let chords = ((params.count as usize).saturating_sub(1)).div_ceil(3).max(1);

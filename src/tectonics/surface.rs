@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::{
     crust,
     grid::{Field, Grid, cubic, for_each_row, linear, nearest_feature},
-    noise::{Fbm, Gullies, Key, Octaves, Sampler},
+    noise::{Fbm, Gullies, Key, Octaves, Sampler, smoothstep},
     world::Layer,
 };
 
@@ -21,6 +21,8 @@ use super::{
     warp::Warp,
 };
 
+/// Spacing of the widest valleys that rivers cut side by side, m.
+const WIDEST_VALLEY_M: f64 = 30e3;
 /// Thickening that leaves a third of the smoothing of what lay there before, m.
 const STRENGTH_M: f32 = 8_000.0;
 
@@ -208,11 +210,12 @@ fn ground(run: &Simulation) -> (Vec<u8>, Vec<Rock>) {
             let owner = top.get(from).copied().unwrap_or(0);
             let at_m = run.domain.cell_center_m(i % n, i / n);
             let plate = &run.plates[owner as usize];
-            let beside = || plate.sample(run.domain.cell_center_m(from % n, from / n));
+            let time = run.time_myr as f32;
+            let beside = || plate.sample(run.domain.cell_center_m(from % n, from / n), time);
             (
                 owner,
                 plate
-                    .sample(at_m)
+                    .sample(at_m, time)
                     .or_else(beside)
                     .unwrap_or(Rock { crust_m: crust::OCEAN_THICKNESS_M as f32, ..Rock::default() }),
             )
@@ -244,7 +247,7 @@ fn profiles(
                 let d = near.distance_m.data[i] as f64;
                 let Some(border) = at.get(near.index.data[i] as usize).copied().flatten() else { continue };
                 // How long this border has been at work: full after 40 km.
-                let moved = border.closing_m_per_yr.abs() * run.time_myr * 1e6;
+                let moved = border.speed_m_per_yr * run.time_myr * 1e6;
                 let strength = (moved / 40e3).min(1.0);
                 let under = plate[i] as usize == border.under;
                 *value += (strength * profile(meeting, d, under, &rock[i], params, belt_m)) as f32;
@@ -339,7 +342,12 @@ impl Detail {
         Self {
             plains: Fbm::new(2.0 * belt_m, 0.7).octaves(key.named("plains"), map.cell_m),
             ridges: Fbm::new(0.9 * belt_m, 0.9).octaves(key.named("ridges"), map.cell_m),
-            gullies: Gullies { wavelength_m: 0.3 * belt_m, octaves: 6, relief: 0.07, half_slope: 0.11 },
+            gullies: Gullies {
+                wavelength_m: (0.3 * belt_m).min(WIDEST_VALLEY_M),
+                octaves: 6,
+                relief: 0.07,
+                half_slope: 0.11,
+            },
             gully_key: key.named("gullies"),
             cell_m: map.cell_m,
             sea_m,
@@ -371,9 +379,4 @@ impl Detail {
         }
         height
     }
-}
-
-fn smoothstep(t: f64) -> f64 {
-    let t = t.clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }

@@ -12,7 +12,7 @@ use crate::{
 
 use super::{engine::Engine, params::PlatesParams};
 
-/// Engine steps in one step of the stage: one engine second.
+/// Engine steps in one step of the stage: about an engine second.
 pub const ENGINE_STEPS: u64 = 30;
 
 /// A run under the thesis's rules.
@@ -28,6 +28,7 @@ pub struct Thesis {
     step_m: f64,
     sites_per_m2: f64,
     steps: u64,
+    in_all: u64,
     step: u64,
     key: Key,
 }
@@ -38,7 +39,8 @@ impl Thesis {
         engine.step(|_, _| Default::default());
         engine.take_begun();
         let [w, h] = map.extent_m();
-        let steps = (params.duration_myr * 1e6 / (engine.step_yr() * ENGINE_STEPS as f64)).ceil().max(1.0) as u64;
+        let in_all = engine.fit(params.duration_myr * 1e6);
+        let steps = in_all.div_ceil(ENGINE_STEPS);
         Self {
             engine,
             height: Field::filled(map, 0.0),
@@ -47,6 +49,7 @@ impl Thesis {
             step_m: params.thesis_step_m,
             sites_per_m2: params.thesis_sites as f64 / (w * h),
             steps,
+            in_all,
             step: 0,
             key: key.named("thesis"),
         }
@@ -60,7 +63,7 @@ impl Thesis {
     /// One second of shaking.
     pub fn advance(&mut self) {
         let mut brush = Brush::new();
-        for _ in 0..ENGINE_STEPS {
+        for _ in 0..ENGINE_STEPS.min(self.in_all - self.step * ENGINE_STEPS) {
             self.engine.step(|_, _| Default::default());
             for ends in self.engine.take_begun() {
                 let path = ends.map(Into::into);

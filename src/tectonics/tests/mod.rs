@@ -68,6 +68,7 @@ fn rules(duration_myr: f64) -> Rules {
         accretion_m: 10e3,
         volcano_m_per_myr: 200.0,
         speed_m_per_yr: SPEED_MM_PER_YR * 1e-3,
+        fastest_m_per_yr: SPEED_MM_PER_YR * 1e-3,
         duration_myr,
         steps: None,
     }
