@@ -1,6 +1,7 @@
 //! The world before the plates move: which plate owns which cell, continents and their shelves, old worn belts.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::{
     crust,
@@ -34,7 +35,10 @@ const OLD_BELT_DRAWS: u64 = 27;
 /// Plate index of every tectonic cell for convex plates in engine units.
 pub fn owners_of(domain: &Domain, outlines: &[Polygon]) -> Vec<u8> {
     let n = domain.cells;
-    (0..n * n).map(|i| owner_at(outlines, domain.to_engine(domain.cell_center_m(i % n, i / n)))).collect()
+    (0..n * n)
+        .into_par_iter()
+        .map(|i| owner_at(outlines, domain.to_engine(domain.cell_center_m(i % n, i / n))))
+        .collect()
 }
 
 /// The convex plate at a point in engine units; the one with the nearest middle where there is none.
@@ -94,6 +98,7 @@ pub fn rocks(domain: &Domain, params: &PlatesParams, continents: &Continents, ke
     let ages = Fbm { octaves: Some(3.0), ..Fbm::new(wide, 1.0) }.octaves(key.named("ages"), cell);
     let belts = old_belts(domain, params, key);
     (0..kind.data.len())
+        .into_par_iter()
         .map(|i| {
             let at = domain.cell_center_m(i % domain.cells, i / domain.cells).into();
             let land = kind.data[i] as f64;
@@ -114,28 +119,34 @@ pub fn rocks(domain: &Domain, params: &PlatesParams, continents: &Continents, ke
 
 /// Thickness that old belts left, m: a few long curved lines, raised in many draws.
 fn old_belts(domain: &Domain, params: &PlatesParams, key: Key) -> Field<f32> {
-    let mut sum = Field::filled(domain.grid(), 0.0f32);
+    let belts: Vec<Field<f32>> = (0..params.old_belts as u64)
+        .into_par_iter()
+        .map(|belt| old_belt(domain, params, key.named("old belt").with(belt)))
+        .collect();
+    // Added up in their order, so that threads do not matter.
+    Field::from_fn(domain.grid(), |x, y| belts.iter().map(|belt| belt.at(x, y)).sum())
+}
+
+fn old_belt(domain: &Domain, params: &PlatesParams, key: Key) -> Field<f32> {
+    let mut raised = Field::filled(domain.grid(), 0.0f32);
     let mut brush = Brush::new();
-    for belt in 0..params.old_belts as u64 {
-        let key = key.named("old belt").with(belt);
-        let mut stream = key.stream();
-        let path = wandering_line(domain, &mut stream);
-        let height_m = OLD_BELT_M * stream.between(0.4, 1.0);
-        let half_width_m = params.belt_km * 1e3 * stream.between(0.7, 1.3);
-        for draw in 0..OLD_BELT_DRAWS {
-            // Two thirds of the draws are half as wide: a crest on a swell.
-            let half = if draw % 3 == 0 { half_width_m } else { half_width_m / 2.0 };
-            let step = height_m / OLD_BELT_DRAWS as f64;
-            for cell in rmp::cells_along(&path, rmp::density_for_half_width(half), key.with(draw)) {
-                let outline: Vec<[f64; 2]> = cell.outline.iter().map(|&v| domain.to_cells(v.into()).into()).collect();
-                let raised = step * cell.weight / rmp::MEAN_WEIGHT;
-                brush.cover(&outline, domain.cells, domain.cells, |x, y, coverage| {
-                    sum.data[y * domain.cells + x] += (raised * coverage as f64) as f32;
-                });
-            }
+    let mut stream = key.stream();
+    let path = wandering_line(domain, &mut stream);
+    let height_m = OLD_BELT_M * stream.between(0.4, 1.0);
+    let half_width_m = params.belt_km * 1e3 * stream.between(0.7, 1.3);
+    let step_m = height_m / OLD_BELT_DRAWS as f64;
+    for draw in 0..OLD_BELT_DRAWS {
+        // Two thirds of the draws are half as wide: a crest on a swell.
+        let half = if draw % 3 == 0 { half_width_m } else { half_width_m / 2.0 };
+        for cell in rmp::cells_along(&path, rmp::density_for_half_width(half), key.with(draw)) {
+            let outline: Vec<[f64; 2]> = cell.outline.iter().map(|&v| domain.to_cells(v.into()).into()).collect();
+            let height_m = step_m * cell.weight / rmp::MEAN_WEIGHT;
+            brush.cover(&outline, domain.cells, domain.cells, |x, y, coverage| {
+                raised.data[y * domain.cells + x] += (height_m * coverage as f64) as f32;
+            });
         }
     }
-    sum
+    raised
 }
 
 fn wandering_line(domain: &Domain, stream: &mut crate::noise::Stream) -> Vec<[f64; 2]> {
