@@ -90,7 +90,7 @@ catalogue! {
     /// Share of continental crust: 0 oceanic, 1 continental.
     CrustKind: "crust_kind", "Crust kind", "1", [0.0, 1.0], Sequential, Kind::Continuous;
     /// Age of the crust.
-    CrustAge: "crust_age", "Crust age", "My", [0.0, 500.0], Age, Kind::Continuous;
+    CrustAge: "crust_age", "Crust age", "My", [0.0, 200.0], Age, Kind::Continuous;
     /// Thickness of the crust.
     CrustThickness: "crust_thickness", "Crust thickness", "km", [5.0, 70.0], Sequential, Kind::Continuous;
     /// What the nearest plate boundary does, where one is near.
