@@ -44,18 +44,8 @@ pub fn cones(
     let mut gains = Vec::new();
     for (site, at_m, strength) in sites_near(plate, line, arc, site_key) {
         for cell in rmp::cells_along(&[at_m.into()], density, key.with(site)) {
-            let frame = &plate.frame;
-            let outline: Vec<[f64; 2]> =
-                cell.outline.iter().map(|&v| frame.to_cells(plate.pose.to_body(v.into())).into()).collect();
-            brush.cover(&outline, frame.width, frame.height, |x, y, coverage| {
-                let index = y * frame.width + x;
-                if plate.owned[index] {
-                    gains.push(Share {
-                        plate: stretch.over,
-                        cell: index,
-                        share: height_m * strength * coverage as f64,
-                    });
-                }
+            plate.cover(&cell, brush, |index, coverage| {
+                gains.push(Share { plate: stretch.over, cell: index, share: height_m * strength * coverage });
             });
         }
     }

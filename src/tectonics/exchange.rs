@@ -70,16 +70,16 @@ pub fn compose(domain: &Domain, plates: &[Plate], polarity: &Polarity) -> Owners
     let mut pairs = vec![(NONE, NONE); n * n];
     for_each_row(&mut pairs, n, |y, row| {
         let mut near = Vec::with_capacity(plates.len());
-        for (block, cells) in row.chunks_mut(32).enumerate() {
-            let (first, last) =
-                (domain.cell_center_m(block * 32, y), domain.cell_center_m(block * 32 + cells.len() - 1, y));
+        for (block, cells) in row.chunks_mut(BLOCK).enumerate() {
+            let x = block * BLOCK;
+            let (first, last) = (domain.cell_center_m(x, y), domain.cell_center_m(x + cells.len() - 1, y));
             near.clear();
-            near.extend((0..plates.len()).filter(|&p| {
-                let [low, high] = bounds[p];
-                low.y <= first.y && high.y >= first.y && low.x <= last.x && high.x >= first.x
+            near.extend(plates.iter().enumerate().zip(&bounds).filter_map(|((p, plate), [low, high])| {
+                let meets = low.y <= first.y && high.y >= first.y && low.x <= last.x && high.x >= first.x;
+                meets.then(|| Track::new(p, plate, first, domain.cell_m()))
             }));
             for (x, cell) in cells.iter_mut().enumerate() {
-                *cell = owners_at(domain.cell_center_m(block * 32 + x, y), plates, &near, polarity);
+                *cell = owners_at(x as f64, &near, polarity);
             }
         }
     });
@@ -87,18 +87,42 @@ pub fn compose(domain: &Domain, plates: &[Plate], polarity: &Polarity) -> Owners
     Owners { top, below }
 }
 
-fn owners_at(at_m: DVec2, plates: &[Plate], near: &[usize], polarity: &Polarity) -> (u8, u8) {
-    let mut top: Option<(usize, usize)> = None;
+/// Cells of a row that are composed with one list of plates.
+const BLOCK: usize = 32;
+
+/// A row of the square as a plate's raster sees it: a straight line in evenly spaced steps.
+struct Track<'a> {
+    index: usize,
+    plate: &'a Plate,
+    first: DVec2,
+    step: DVec2,
+}
+
+impl<'a> Track<'a> {
+    fn new(index: usize, plate: &'a Plate, first_m: DVec2, cell_m: f64) -> Self {
+        let at = |m: DVec2| plate.frame.to_cells(plate.pose.to_body(m));
+        let first = at(first_m);
+        Self { index, plate, first, step: at(first_m + DVec2::X * cell_m) - first }
+    }
+
+    fn owned(&self, x: f64) -> Option<usize> {
+        self.plate.frame.cell_at(self.first + self.step * x).filter(|&i| self.plate.owned[i])
+    }
+}
+
+fn owners_at(x: f64, near: &[Track], polarity: &Polarity) -> (u8, u8) {
+    let mut top: Option<(&Track, usize)> = None;
     let mut below = NONE;
-    for &p in near {
-        let Some(i) = plates[p].owned_under(at_m) else { continue };
+    for track in near {
+        let Some(i) = track.owned(x) else { continue };
+        let p = track.index;
         match top {
-            Some((q, j)) if !polarity.wins(p, &plates[p].rock[i], q, &plates[q].rock[j]) => below = p as u8,
-            Some((q, _)) => (top, below) = (Some((p, i)), q as u8),
-            None => top = Some((p, i)),
+            Some((q, j)) if !polarity.wins(p, &track.plate.rock[i], q.index, &q.plate.rock[j]) => below = p as u8,
+            Some((q, _)) => (top, below) = (Some((track, i)), q.index as u8),
+            None => top = Some((track, i)),
         }
     }
-    (top.map_or(NONE, |(p, _)| p as u8), below)
+    (top.map_or(NONE, |(track, _)| track.index as u8), below)
 }
 
 /// Cells of a mask that lie within one cell of a 3 x 3 block wholly inside it: slivers removed.
@@ -144,16 +168,20 @@ pub fn consume(domain: &Domain, plates: &mut [Plate], owners: &Owners) -> Vec<Lo
         return Vec::new();
     }
     let contested = opened(n, &overlapped);
+    let mut under: Vec<Vec<usize>> = vec![Vec::new(); plates.len()];
+    for w in (0..n * n).filter(|&w| contested[w]) {
+        under[owners.below[w] as usize].push(w);
+    }
     let lost: Vec<Vec<Lost>> = plates
         .par_iter_mut()
         .enumerate()
         .map(|(p, plate)| {
             // A third plate below two others waits until they have settled.
-            let under = |w: usize| contested[w] && owners.below[w] == p as u8;
             let mut lost = Vec::new();
-            for cell in cells_over(domain, plate, under) {
+            for cell in cells_around(domain, plate, &under[p]).filter(|&cell| plate.owned[cell]).collect::<Vec<_>>() {
                 let at_m = plate.center_m(cell);
-                if let Some(w) = cell_index(domain, at_m).filter(|&w| plate.owned[cell] && under(w)) {
+                let below = |w: &usize| contested[*w] && owners.below[*w] == p as u8;
+                if let Some(w) = cell_index(domain, at_m).filter(below) {
                     lost.push(Lost { loser: p, winner: owners.top[w] as usize, at_m, rock: plate.give(cell) });
                 }
             }
@@ -163,19 +191,19 @@ pub fn consume(domain: &Domain, plates: &mut [Plate], owners: &Owners) -> Vec<Lo
     lost.into_iter().flatten().collect()
 }
 
-/// Cells of a plate's raster in the box around the tectonic cells for which `wanted` holds.
-fn cells_over(domain: &Domain, plate: &Plate, wanted: impl Fn(usize) -> bool) -> Vec<usize> {
+/// Cells of a plate's raster in the box around these tectonic cells.
+fn cells_around(domain: &Domain, plate: &Plate, around: &[usize]) -> impl Iterator<Item = usize> + use<> {
     let n = domain.cells;
     let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    for w in (0..n * n).filter(|&w| wanted(w)) {
+    for &w in around {
         let at = plate.frame.to_cells(plate.pose.to_body(domain.cell_center_m(w % n, w / n)));
         (low, high) = (low.min(at), high.max(at));
     }
-    let frame = &plate.frame;
+    let (width, height) = (plate.frame.width, plate.frame.height);
     let range =
         |from: f64, to: f64, size: usize| (from - 1.0).max(0.0) as usize..((to + 2.0).max(0.0) as usize).min(size);
-    let (xs, ys) = (range(low.x, high.x, frame.width), range(low.y, high.y, frame.height));
-    ys.flat_map(|y| xs.clone().map(move |x| y * frame.width + x)).collect()
+    let (xs, ys) = (range(low.x, high.x, width), range(low.y, high.y, height));
+    ys.flat_map(move |y| xs.clone().map(move |x| y * width + x))
 }
 
 /// The tectonic cell under a point of the map.

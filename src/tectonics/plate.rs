@@ -2,6 +2,8 @@
 
 use glam::DVec2;
 
+use crate::rmp::{Brush, Cell};
+
 use super::{domain::Domain, engine::Pose};
 
 /// The raster of a plate's body frame: cells `(i, j)` have their centres at `corner_m + (i + ½, j + ½)·cell_m`.
@@ -193,6 +195,19 @@ impl Plate {
             let [crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr] = sum.map(|s| (s / weight) as f32);
             Rock { crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr, rated_myr: time_myr }
         })
+    }
+
+    /// The owned cells below a cell of a mosaic, each with the share of it that is covered.
+    pub fn cover(&self, mosaic: &Cell, brush: &mut Brush, mut put: impl FnMut(usize, f64)) {
+        let frame = &self.frame;
+        let outline: Vec<[f64; 2]> =
+            mosaic.outline.iter().map(|&v| frame.to_cells(self.pose.to_body(v.into())).into()).collect();
+        brush.cover(&outline, frame.width, frame.height, |x, y, coverage| {
+            let index = y * frame.width + x;
+            if self.owned[index] {
+                put(index, f64::from(coverage));
+            }
+        });
     }
 
     /// Volume of its crust, m³.

@@ -7,6 +7,7 @@
 //! plateaus. Shares add up to one, so that crust is conserved.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::{
     noise::Key,
@@ -68,23 +69,24 @@ pub struct Share {
     pub share: f64,
 }
 
-/// Shares one whole out along a line; empty if no cell can take any.
-pub fn shares(plates: &[Plate], line: &Line, belt: &Belt, key: Key, brush: &mut Brush) -> Vec<Share> {
-    let mut shares = Vec::new();
-    let mut part = 1.0;
-    for octave in 0..belt.octaves {
-        let half_width_m = belt.half_width_m / f64::from(1 << octave);
-        let first = shares.len();
-        for draw in 0..DRAWS {
-            let key = key.with(octave as u64).with(draw as u64);
-            draw_once(plates, line, belt, half_width_m, key, brush, &mut shares);
-        }
-        let sum: f64 = shares[first..].iter().map(|s| s.share).sum();
-        if sum > 0.0 {
-            shares[first..].iter_mut().for_each(|s| s.share *= part / sum);
-        }
-        part *= belt.gain;
-    }
+/// Shares one whole out along a line, octaves in parallel; empty if no cell can take any.
+pub fn shares(plates: &[Plate], line: &Line, belt: &Belt, key: Key) -> Vec<Share> {
+    let octaves: Vec<Vec<Share>> = (0..belt.octaves)
+        .into_par_iter()
+        .map(|octave| {
+            let (mut shares, mut brush) = (Vec::new(), Brush::new());
+            let half_width_m = belt.half_width_m / f64::from(1 << octave);
+            for draw in 0..DRAWS {
+                let key = key.with(octave as u64).with(draw as u64);
+                draw_once(plates, line, belt, half_width_m, key, &mut brush, &mut shares);
+            }
+            let part: f64 = (0..octave).map(|_| belt.gain).product();
+            let sum: f64 = shares.iter().map(|s| s.share).sum();
+            shares.iter_mut().for_each(|s| s.share *= part / sum);
+            shares
+        })
+        .collect();
+    let mut shares = octaves.concat();
     let sum: f64 = shares.iter().map(|s| s.share).sum();
     shares.iter_mut().for_each(|s| s.share /= sum);
     shares
@@ -106,17 +108,10 @@ fn draw_once(
     for cell in rmp::cells_along(&path, rmp::density_for_half_width(half_width_m), key) {
         for &p in members {
             let plate = &plates[p];
-            let frame = &plate.frame;
-            let outline: Vec<[f64; 2]> =
-                cell.outline.iter().map(|&v| frame.to_cells(plate.pose.to_body(v.into())).into()).collect();
-            brush.cover(&outline, frame.width, frame.height, |x, y, coverage| {
-                let index = y * frame.width + x;
-                if plate.owned[index] {
-                    let room = room(&plate.rock[index], belt, line.work);
-                    let share = cell.weight * coverage as f64 * room;
-                    if share > 0.0 {
-                        out.push(Share { plate: p, cell: index, share });
-                    }
+            plate.cover(&cell, brush, |index, coverage| {
+                let share = cell.weight * coverage * room(&plate.rock[index], belt, line.work);
+                if share > 0.0 {
+                    out.push(Share { plate: p, cell: index, share });
                 }
             });
         }

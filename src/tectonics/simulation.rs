@@ -291,7 +291,7 @@ impl Simulation {
         let path_m = raise::spine(&rift.points, self.rules.belt.half_width_m);
         let line = Line { path_m, lean: DVec2::ZERO, offset_m: 0.0, plates: [plate; 2], work: Work::Thin };
         let key = self.key.named("rift").with(self.step).with(index);
-        let shares = raise::shares(&self.plates, &line, &self.rules.belt, key, &mut Brush::new());
+        let shares = raise::shares(&self.plates, &line, &self.rules.belt, key);
         let taken = self.apply(&shares, -rift.volume_m3, |rock| (&mut rock.crust_m, [raise::THINNEST_M, f32::MAX]));
         // What the draws could not find is booked as made: melt that fills the rift.
         self.books.made_m3 += rift.volume_m3 + taken;
@@ -330,9 +330,7 @@ impl Simulation {
         let shares: Vec<Vec<Share>> = jobs
             .par_iter()
             .enumerate()
-            .map_init(Brush::new, |brush, (i, (line, ..))| {
-                raise::shares(&self.plates, line, &self.rules.belt, key.with(i as u64), brush)
-            })
+            .map(|(i, (line, ..))| raise::shares(&self.plates, line, &self.rules.belt, key.with(i as u64)))
             .collect();
         let thickest = self.rules.belt.thickest_m as f32;
         for ((_, volume, pot), shares) in jobs.into_iter().zip(&shares) {

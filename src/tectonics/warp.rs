@@ -6,6 +6,7 @@
 //! fold: a chain bends further than one sum of all wavelengths could.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::noise::{Fbm, Key, Octaves};
 
@@ -14,7 +15,7 @@ const LINKS: [(f64, f64); 6] = [(0.85, 1.0), (0.36, 0.42), (0.15, 0.16), (0.06, 
 /// Smallest area factor a link may have.
 const LEAST_DETERMINANT: f64 = 0.4;
 /// Points in a link's wavelength at which folding is looked for.
-const PROBES: f64 = 10.0;
+const PROBES: f64 = 6.0;
 
 /// A fold-free displacement of the plane.
 #[derive(Clone, Debug)]
@@ -40,13 +41,14 @@ impl Link {
         let (low, span) = (-0.2 * map_m, 1.4 * map_m);
         let count = (span / wavelength_m * PROBES).ceil();
         let slopes: Vec<Rows> = (0..(count.x * count.y) as usize)
+            .into_par_iter()
             .map(|i| {
                 let (x, y) = (i % count.x as usize, i / count.x as usize);
                 let at = low + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) / count * span;
                 [0, 1].map(|k| DVec2::from(link.parts[k].gradient(at.into()).1))
             })
             .collect();
-        while slopes.iter().any(|slope| determinant(&rows(slope, link.amplitude_m)) < LEAST_DETERMINANT) {
+        while slopes.par_iter().any(|slope| determinant(&rows(slope, link.amplitude_m)) < LEAST_DETERMINANT) {
             link.amplitude_m *= 0.97;
         }
         link
