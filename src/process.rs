@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    grid::{Field, sum_f64},
+    grid::{Field, Grid, sum_f64},
     noise::Key,
     world::{Layer, Mask, MaskError, Matter, World},
 };
@@ -23,6 +23,12 @@ pub trait Process: Send {
 
     /// Layers it may change or make.
     fn writes(&self) -> &'static [Layer];
+
+    /// Whether its parameters go together with each other, with their files and with a map of this grid. Asked while a
+    /// recipe is read, so that a run does not begin that cannot end.
+    fn fit(&self, _grid: &Grid) -> Result<(), ProcessError> {
+        Ok(())
+    }
 
     /// Runs one step.
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError>;

@@ -7,8 +7,9 @@ use serde::Deserialize;
 use serde_json::Value as Json;
 
 use crate::{
+    grid::Grid,
     process::{Blend, Placement, Process, ProcessError},
-    world::{Layer, Mask},
+    world::{Layer, Mask, open_picture},
 };
 
 use super::{
@@ -159,7 +160,7 @@ impl Plan {
             None => WorldParams::default(),
         };
         reader.sides(&world, &root)?;
-        let stages = reader.stages(&root)?;
+        let stages = reader.stages(&root, world.grid())?;
         let text = |key: &str| match root.get(key).map(|node| &node.value) {
             Some(Value::Text(text)) => Some(text.clone()),
             _ => None,
@@ -274,7 +275,7 @@ impl Reader<'_> {
         Err(self.error(&place, Problem::Unfit(what)))
     }
 
-    fn stages(&self, root: &Table) -> Result<Vec<Stage>, RecipeError> {
+    fn stages(&self, root: &Table, grid: Grid) -> Result<Vec<Stage>, RecipeError> {
         let keys = stage_keys(root);
         let refuse = |place: &Place, what: &str| self.error(place, Problem::Unfit(what.into()));
         let Some(node) = root.get("stage") else {
@@ -292,7 +293,7 @@ impl Reader<'_> {
             };
             let stage = self.stage(table, &item.place, key)?;
             self.take_id(table, key, &mut ids)?;
-            self.build_once(&stage, table, &item.place, &mut layers)?;
+            self.build_once(&stage, table, item, grid, &mut layers)?;
             made.push(stage);
         }
         if made.iter().all(|stage| !stage.enabled) {
@@ -349,6 +350,10 @@ impl Reader<'_> {
                 let what = format!("mask: there is no file {} (paths are relative to the recipe)", quoted(text));
                 Err(self.error(&place, Problem::Unfit(what)))
             }
+            Mask::Image(path) => match open_picture(path) {
+                Ok(_) => Ok(mask),
+                Err(e) => Err(self.error(&place, Problem::Unfit(format!("mask: {e}")))),
+            },
             _ => Ok(mask),
         }
     }
@@ -376,9 +381,11 @@ impl Reader<'_> {
         &self,
         stage: &Stage,
         table: &Table,
-        place: &Place,
+        item: &Node,
+        grid: Grid,
         layers: &mut Vec<Layer>,
     ) -> Result<(), RecipeError> {
+        let place = &item.place;
         let unfit = |e: ProcessError| self.error(place, Problem::Unfit(format!("stage '{}': {e}", stage.label)));
         let process = stage.build().map_err(unfit)?;
         if !stage.enabled {
@@ -400,6 +407,7 @@ impl Reader<'_> {
             );
             return Err(self.error(place, Problem::Unfit(what)));
         }
+        process.fit(&grid).map_err(unfit)?;
         layers.extend(process.writes());
         Ok(())
     }

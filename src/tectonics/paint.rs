@@ -1,9 +1,10 @@
 //! A user's own plates and continents: images stretched over the map, read onto the tectonic raster so that the map,
 //! which reads the raster through the warp, shows them where they were drawn.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
 use glam::DVec2;
+use image::{GrayImage, RgbImage};
 
 use crate::{grid::Field, process::ProcessError, world::open_picture};
 
@@ -14,10 +15,15 @@ const LEAST_SHARE: f64 = 0.004;
 /// Most plates a picture may hold.
 const MOST_PLATES: usize = 60;
 
+/// The picture of the continents.
+pub fn open_continents(path: &str) -> Result<GrayImage, ProcessError> {
+    let picture = open_picture(Path::new(path)).map_err(|e| ProcessError::Unfit(format!("continents: {e}")))?;
+    Ok(picture.into_luma8())
+}
+
 /// Brightness of a picture, 0 to 1, over the square; beyond the map its rim is continued.
 pub fn light(domain: &Domain, warp: &Warp, path: &str) -> Result<Field<f32>, ProcessError> {
-    let picture =
-        open_picture(Path::new(path)).map_err(|e| ProcessError::Unfit(format!("continents: {e}")))?.into_luma8();
+    let picture = open_continents(path)?;
     Ok(Field::from_fn(domain.grid(), |x, y| {
         let at_m = warp.shown_at(domain.cell_center_m(x, y));
         let [px, py] = pixel(domain, at_m, [picture.width(), picture.height()]);
@@ -31,11 +37,11 @@ fn pixel(domain: &Domain, at_m: DVec2, size: [u32; 2]) -> [u32; 2] {
     [clamp(at.x, size[0]), clamp(at.y, size[1])]
 }
 
-/// Plate index of every tectonic cell: one plate for each colour of the picture, the most frequent first.
-pub fn plates(domain: &Domain, warp: &Warp, path: &str) -> Result<(Vec<u8>, usize), ProcessError> {
+/// The picture of the plates and its colours, one a plate, the most frequent first.
+pub fn open_plates(path: &str) -> Result<(RgbImage, Vec<[u8; 3]>), ProcessError> {
     let unfit = |text: String| ProcessError::Unfit(format!("map: {text}"));
     let picture = open_picture(Path::new(path)).map_err(|e| unfit(e.to_string()))?.into_rgb8();
-    let mut colours: std::collections::BTreeMap<[u8; 3], usize> = std::collections::BTreeMap::new();
+    let mut colours: BTreeMap<[u8; 3], usize> = BTreeMap::new();
     for p in picture.pixels() {
         *colours.entry(p.0).or_default() += 1;
     }
@@ -48,17 +54,23 @@ pub fn plates(domain: &Domain, warp: &Warp, path: &str) -> Result<(Vec<u8>, usiz
             kept.len()
         )));
     }
+    Ok((picture, kept.into_iter().map(|(colour, _)| colour).collect()))
+}
+
+/// Plate index of every tectonic cell: one plate for each colour of the picture, the most frequent first.
+pub fn plates(domain: &Domain, warp: &Warp, path: &str) -> Result<(Vec<u8>, usize), ProcessError> {
+    let (picture, kept) = open_plates(path)?;
     let distance = |a: [u8; 3], b: [u8; 3]| (0..3).map(|k| (a[k] as i32 - b[k] as i32).pow(2)).sum::<i32>();
     let owners = Field::from_fn(domain.grid(), |x, y| {
         let at_m = warp.shown_at(domain.cell_center_m(x, y));
         let [px, py] = pixel(domain, at_m, [picture.width(), picture.height()]);
         let colour = picture.get_pixel(px, py).0;
-        (0..kept.len()).min_by_key(|&k| distance(kept[k].0, colour)).unwrap_or(0) as u8
+        (0..kept.len()).min_by_key(|&k| distance(kept[k], colour)).unwrap_or(0) as u8
     });
     if let Some(lost) = (0..kept.len()).find(|&k| !owners.data.contains(&(k as u8))) {
-        let [r, g, b] = kept[lost].0;
-        return Err(unfit(format!(
-            "{path}: the plate coloured #{r:02x}{g:02x}{b:02x} is too thin; draw it broader or raise cells"
+        let [r, g, b] = kept[lost];
+        return Err(ProcessError::Unfit(format!(
+            "map: {path}: the plate coloured #{r:02x}{g:02x}{b:02x} is too thin; draw it broader or raise cells"
         )));
     }
     Ok((owners.data, kept.len()))

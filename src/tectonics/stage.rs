@@ -81,6 +81,14 @@ impl Process for Stage {
         ]
     }
 
+    fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
+        let domain = Domain::around(grid, self.params.margin, self.params.cells as usize);
+        check(&self.params, &domain)?;
+        self.params.continents.as_deref().map(paint::open_continents).transpose()?;
+        self.params.map.as_deref().map(paint::open_plates).transpose()?;
+        Ok(())
+    }
+
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
         if self.run.is_none() {
             self.begin(world, context)?;
@@ -209,7 +217,6 @@ fn settings(params: &PlatesParams, style: Style) -> Settings {
 impl Geologic {
     fn new(params: &PlatesParams, steps: Option<u64>, map: Grid, key: Key) -> Result<Self, ProcessError> {
         let domain = Domain::around(&map, params.margin, params.cells as usize);
-        check(params, &domain)?;
         let warp = Warp::new(domain.map_m, params.bend, key.named("warp"));
         let (owners, outlines) = match &params.map {
             Some(path) => {
@@ -311,6 +318,10 @@ fn check(params: &PlatesParams, domain: &Domain) -> Result<(), ProcessError> {
     if params.style == PlateStyle::Thesis {
         return Ok(());
     }
+    if let Some(index) = params.plate.iter().position(|p| !domain.on_map(DVec2::from(p.at_km) * 1e3)) {
+        let ([x, y], [w, h]) = (params.plate[index].at_km, (domain.map_m / 1e3).into());
+        return unfit(format!("plate {}: at_km = [{x}, {y}] lies outside the map (0 to {w}, 0 to {h})", index + 1));
+    }
     // Finer than the tectonic cells nothing can be raised; wider than a sixth of the square all is one range.
     let least = 1.5 * cell_km;
     let bounds =
@@ -357,13 +368,9 @@ fn drives(
     for (index, entry) in params.plate.iter().enumerate() {
         let at_m = DVec2::from(entry.at_km) * 1e3;
         let [x, y] = entry.at_km;
-        let cell = super::exchange::cell_index(domain, warp.read_at(at_m)).filter(|_| domain.on_map(at_m));
-        let cell = cell.ok_or_else(|| {
-            let [w, h] = [domain.map_m.x / 1e3, domain.map_m.y / 1e3];
-            ProcessError::Unfit(format!(
-                "plate {}: at_km = [{x}, {y}] lies outside the map (0 to {w}, 0 to {h})",
-                index + 1
-            ))
+        let cell = super::exchange::cell_index(domain, warp.read_at(at_m)).ok_or_else(|| {
+            let what = format!("plate {}: at_km = [{x}, {y}] is bent out of the square; lower bend", index + 1);
+            ProcessError::Unfit(what)
         })?;
         let plate = owners[cell];
         if drives[plate as usize] != Drive::Mantle {
@@ -382,7 +389,6 @@ fn drives(
 
 fn thesis(params: &PlatesParams, map: Grid, key: Key) -> Result<Thesis, ProcessError> {
     let domain = Domain::around(&map, params.margin, params.cells as usize);
-    check(params, &domain)?;
     let square: Polygon = domain.square_engine().into_iter().map(|v| v * THESIS_BLOCK).collect();
     // Chords cross: about (count - 1) / 3 of them make `count` plates.
     let chords = ((params.count as usize).saturating_sub(1)).div_ceil(3).max(1);

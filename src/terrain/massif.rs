@@ -122,7 +122,7 @@ impl Massif {
         tour
     }
 
-    fn check(&self) -> Result<(), ProcessError> {
+    pub fn check(&self) -> Result<(), ProcessError> {
         let narrowest_m = self.half_width_m / libm::exp2(self.octaves as f64 - 1.0);
         let length_m: f64 = self.path_m.windows(2).map(|s| libm::hypot(s[1][0] - s[0][0], s[1][1] - s[0][1])).sum();
         let furthest_m = self.path_m.iter().flatten().fold(0.0, |far: f64, v| far.max(v.abs()));

@@ -40,6 +40,11 @@ pub trait Shape: Send + 'static {
     /// Layers that must be there before.
     const READS: &'static [Layer] = &[];
 
+    /// Whether the parameters go together with a map of this grid.
+    fn fit(&self, _grid: &Grid) -> Result<(), ProcessError> {
+        Ok(())
+    }
+
     /// The shape's heights over the map, m. `ground` is the bedrock as it stands; only shapes that rework it look at more
     /// than its grid.
     fn heights(&self, ground: &Field<f32>, context: &Context) -> Result<Field<f32>, ProcessError>;
@@ -65,6 +70,10 @@ impl<S: Shape> Process for Shaping<S> {
 
     fn writes(&self) -> &'static [Layer] {
         &[Layer::Bedrock]
+    }
+
+    fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
+        self.shape.fit(grid)
     }
 
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {

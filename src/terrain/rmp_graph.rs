@@ -64,9 +64,8 @@ impl Default for RmpGraphParams {
 }
 
 impl Shape for RmpGraphParams {
-    fn heights(&self, ground: &Field<f32>, context: &Context) -> Result<Field<f32>, ProcessError> {
-        let grid = ground.grid;
-        let (peak_m, [w, h]) = (place_m(self.at_km, &grid), grid.extent_m());
+    fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
+        let (peak_m, [w, h]) = (place_m(self.at_km, grid), grid.extent_m());
         if !((0.0..=w).contains(&peak_m[0]) && (0.0..=h).contains(&peak_m[1])) {
             return Err(ProcessError::Unfit(format!(
                 "at_km = [{}, {}] lies outside the map, which is {} x {} km",
@@ -76,6 +75,12 @@ impl Shape for RmpGraphParams {
                 h / 1e3
             )));
         }
+        Ok(())
+    }
+
+    fn heights(&self, ground: &Field<f32>, context: &Context) -> Result<Field<f32>, ProcessError> {
+        let grid = ground.grid;
+        let peak_m = place_m(self.at_km, &grid);
         let key = context.key.named("rmp-graph");
         let bent = self.bending(&grid, peak_m, key);
         let mut heights = Field::filled(grid, 0.0);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Shape, length_m, massif::Massif, place_m};
 use crate::{
-    grid::Field,
+    grid::{Field, Grid},
     process::{Context, ProcessError},
 };
 
@@ -59,18 +59,26 @@ impl Default for RmpPeakParams {
 }
 
 impl Shape for RmpPeakParams {
+    fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
+        self.massif(grid).check()
+    }
+
     fn heights(&self, ground: &Field<f32>, context: &Context) -> Result<Field<f32>, ProcessError> {
-        let grid = ground.grid;
-        let massif = Massif {
-            path_m: vec![place_m(self.at_km, &grid)],
+        self.massif(&ground.grid).heights(ground.grid, context.key.named("rmp-peak"), context)
+    }
+}
+
+impl RmpPeakParams {
+    fn massif(&self, grid: &Grid) -> Massif {
+        Massif {
+            path_m: vec![place_m(self.at_km, grid)],
             height_m: self.height_m,
-            half_width_m: length_m(self.half_width_km, 0.1, &grid),
+            half_width_m: length_m(self.half_width_km, 0.1, grid),
             iterations: self.iterations,
             octaves: self.octaves,
             octave_share: self.octave_share,
             random_weights: self.random_weights,
             spurs: self.spurs,
-        };
-        massif.heights(grid, context.key.named("rmp-peak"), context)
+        }
     }
 }

@@ -64,12 +64,30 @@ impl Default for RmpRidgeParams {
 }
 
 impl Shape for RmpRidgeParams {
+    fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
+        let path_m = self.drawn_m(grid);
+        if !path_m.iter().flatten().all(|v| v.is_finite()) {
+            return Err(ProcessError::Unfit("points_km has a coordinate that is not a number".to_owned()));
+        }
+        self.massif(grid, path_m).check()
+    }
+
     fn heights(&self, ground: &Field<f32>, context: &Context) -> Result<Field<f32>, ProcessError> {
         let grid = ground.grid;
         let key = context.key.named("rmp-ridge");
-        let half_width_m = length_m(self.half_width_km, 0.06, &grid);
-        let massif = Massif {
-            path_m: self.path_m(&grid, half_width_m, key)?,
+        self.massif(&grid, self.path_m(&grid, key)).heights(grid, key, context)
+    }
+}
+
+impl RmpRidgeParams {
+    fn half_width_m(&self, grid: &Grid) -> f64 {
+        length_m(self.half_width_km, 0.06, grid)
+    }
+
+    fn massif(&self, grid: &Grid, path_m: Vec<[f64; 2]>) -> Massif {
+        let half_width_m = self.half_width_m(grid);
+        Massif {
+            path_m,
             height_m: self.height_m,
             half_width_m,
             iterations: self.iterations,
@@ -77,30 +95,30 @@ impl Shape for RmpRidgeParams {
             octave_share: self.octave_share,
             random_weights: self.random_weights,
             spurs: self.spurs,
-        };
-        massif.heights(grid, key, context)
+        }
     }
-}
 
-impl RmpRidgeParams {
-    /// The drawn line, bent, in metres.
-    fn path_m(&self, grid: &Grid, half_width_m: f64, key: Key) -> Result<Vec<[f64; 2]>, ProcessError> {
+    /// The line as it was drawn, in metres.
+    fn drawn_m(&self, grid: &Grid) -> Vec<[f64; 2]> {
         let [w, h] = grid.extent_m();
-        let drawn: Vec<[f64; 2]> = match self.points_km.as_slice() {
+        match self.points_km.as_slice() {
             [] => vec![[0.15 * w, 0.6 * h], [0.5 * w, 0.42 * h], [0.85 * w, 0.5 * h]],
             points => points.iter().map(|[x, y]| [x * 1e3, y * 1e3]).collect(),
-        };
-        if !drawn.iter().flatten().all(|v| v.is_finite()) {
-            return Err(ProcessError::Unfit("points_km has a coordinate that is not a number".to_owned()));
         }
+    }
+
+    /// The drawn line, bent.
+    fn path_m(&self, grid: &Grid, key: Key) -> Vec<[f64; 2]> {
+        let drawn = self.drawn_m(grid);
         if self.bend == 0.0 {
-            return Ok(drawn);
+            return drawn;
         }
+        let half_width_m = self.half_width_m(grid);
         let fbm = Fbm { octaves: Some(4.0), ..Fbm::new(6.0 * half_width_m, 0.9) };
         let noise = [fbm.octaves(key.named("east"), 0.0), fbm.octaves(key.named("south"), 0.0)];
         let reach_m = self.bend * half_width_m;
         let bent = |p: [f64; 2]| [p[0] + reach_m * noise[0].value(p), p[1] + reach_m * noise[1].value(p)];
-        Ok(subdivided(&drawn, 0.25 * half_width_m).into_iter().map(bent).collect())
+        subdivided(&drawn, 0.25 * half_width_m).into_iter().map(bent).collect()
     }
 }
 

@@ -126,15 +126,33 @@ fn worlds() {
 #[test]
 fn a_run_that_fails_leaves_nothing() {
     let place = Place::new();
-    // Fits every range, but not this map: found when the stage begins.
-    let set = ["grow", "rmp-graph", "--size", "16", "--set", "rmp_graph.at_km=[9000, 0]", "--out", "deep/er/w"];
-    let said = place.run(&set);
+    // Only where the plates lie shows that both entries mean the same one.
+    let entry = "[[stage.plate]]\nat_km = [100, 100]\nheading_deg = 0\nspeed_mm_per_yr = 1\n";
+    place.write("twice.toml", &format!("[world]\nsize = 16\n[[stage]]\nkind = \"plates\"\n{entry}{entry}"));
+    let said = place.run(&["grow", "twice.toml", "--out", "deep/er/w"]);
     let last = said.err.lines().last().unwrap();
-    assert!(
-        last.starts_with("error: stage 'rmp_graph', step 1: at_km = [9000, 0] lies outside the map"),
-        "{}",
-        said.err
-    );
+    let what = "error: stage 'plates', step 1: plate 2: at_km = [100, 100] lies on a plate that an earlier entry has";
+    assert!(last.starts_with(what), "{}", said.err);
     assert_eq!(said.code, 1);
-    assert!(place.files().is_empty(), "{:?}", place.files());
+    assert_eq!(place.files(), ["twice.toml"]);
+}
+
+#[test]
+fn what_does_not_go_together_is_found_before_the_run() {
+    let place = Place::new();
+    let refused = |stage: &str, what: &str| {
+        place.write("r.toml", &format!("[world]\nsize = 16\nextent_km = 100\n\n[[stage]]\n{stage}\n"));
+        let said = place.run(&["grow", "r.toml", "--out", "w"]);
+        assert!(said.err.starts_with(&format!("error: r.toml:5: stage {what}")), "{}", said.err);
+        assert_eq!((said.code, said.err.lines().count()), (2, 1), "{}", said.err);
+        assert_eq!(place.files(), ["r.toml"]);
+    };
+    refused("kind = \"rmp_graph\"\nat_km = [9000, 0]", "'rmp_graph': at_km = [9000, 0] lies outside the map");
+    let entry = "[[stage.plate]]\nat_km = [10, 200]\nheading_deg = 0\nspeed_mm_per_yr = 1";
+    let plates = "kind = \"plates\"\nduration_myr = 1\nbelt_km = 10";
+    refused(&format!("{plates}\n{entry}"), "'plates': plate 1: at_km = [10, 200] lies outside the map");
+    refused("kind = \"plates\"\nduration_myr = 1\nbelt_km = 90", "'plates': belt_km = 90 is too wide for this map");
+    refused("kind = \"plates\"\nduration_myr = 50", "'plates': plates would drift");
+    refused(&format!("{plates}\ncontinents = \"r.toml\""), "'plates': continents: ");
+    refused(&format!("{plates}\nmap = \"r.toml\""), "'plates': map: ");
 }
