@@ -30,7 +30,8 @@ pub trait Process: Send {
         Ok(())
     }
 
-    /// Runs one step.
+    /// Runs one step, whole or not at all: one that ends with [`ProcessError::Cancelled`] has changed nothing, so that
+    /// the run can be taken up where it was.
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError>;
 
     /// Brings the world's layers up to date with the process. The timeline calls it before a frame is taken and when

@@ -61,6 +61,12 @@ pub(crate) struct RawGrow {
     /// Replace the world that --out names
     #[arg(long)]
     pub force: bool,
+    /// Go on with the run that was stopped or killed
+    #[arg(long)]
+    pub resume: bool,
+    /// Seconds between checkpoints, 0 for one after each step [default: 45]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub checkpoint_every: Option<String>,
     /// Print the folder, nothing else
     #[arg(long, short)]
     pub quiet: bool,

@@ -1,10 +1,11 @@
 //! Validated commands: what holds one of these need not ask again.
 
-use std::{ops::RangeInclusive, path::PathBuf};
+use std::{ops::RangeInclusive, path::PathBuf, time::Duration};
 
 use crate::{
-    job::{Picture, SHEET_MOST},
+    job::{Existing, Picture, SHEET_MOST},
     recipe::{Overrides, Source, find_stage, nearest, stage_kinds},
+    timeline,
 };
 
 use super::{
@@ -39,7 +40,7 @@ pub(crate) struct Grow {
 /// A world's folder or a sheet.
 #[derive(Debug)]
 pub(crate) enum Aim {
-    Folder { out: Option<PathBuf>, force: bool, until: Option<String> },
+    Folder { out: Option<PathBuf>, existing: Existing, checkpoint_every: Duration, until: Option<String> },
     Sheet { seeds: RangeInclusive<u64>, file: PathBuf },
 }
 
@@ -91,7 +92,16 @@ fn grow(raw: RawGrow) -> Result<Grow, CliError> {
         _ => Voice::Normal,
     };
     let aim = match (raw.seeds, raw.sheet) {
-        (None, None) => Aim::Folder { out: raw.out, force: raw.force, until: raw.until },
+        (None, None) => {
+            let existing = match (raw.force, raw.resume) {
+                (true, true) => return wrong("--force starts anew and --resume goes on: give one of them"),
+                (true, false) => Existing::Replace,
+                (false, true) => Existing::Resume,
+                (false, false) => Existing::Refuse,
+            };
+            let checkpoint_every = raw.checkpoint_every.as_deref().map_or(Ok(timeline::EVERY), seconds)?;
+            Aim::Folder { out: raw.out, existing, checkpoint_every, until: raw.until }
+        }
         (Some(_), None) => return wrong("--seeds draws a contact sheet; name it with --sheet FILE.png"),
         (None, Some(_)) => return wrong("--sheet draws several seeds; name them with --seeds A..B"),
         (Some(seeds), Some(file)) => {
@@ -101,6 +111,8 @@ fn grow(raw: RawGrow) -> Result<Grow, CliError> {
                 ("--until", raw.until.is_some()),
                 ("--json", raw.json),
                 ("--force", raw.force),
+                ("--resume", raw.resume),
+                ("--checkpoint-every", raw.checkpoint_every.is_some()),
             ];
             if let Some((flag, _)) = other.iter().find(|(_, given)| *given) {
                 return wrong(format!("{flag} does not go with --sheet, which grows no folder"));
@@ -119,6 +131,13 @@ fn threads(text: &str) -> Result<usize, CliError> {
     match text.parse() {
         Ok(n) if (1..=MOST_THREADS).contains(&n) => Ok(n),
         _ => wrong(format!("--threads {text}: must be a whole number from 1 to {MOST_THREADS}")),
+    }
+}
+
+fn seconds(text: &str) -> Result<Duration, CliError> {
+    match text.parse::<f64>() {
+        Ok(s) if (0.0..=86_400.0).contains(&s) => Ok(Duration::from_secs_f64(s)),
+        _ => wrong(format!("--checkpoint-every {text}: must be a number of seconds from 0 to 86400")),
     }
 }
 

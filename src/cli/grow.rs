@@ -23,9 +23,9 @@ pub(crate) fn run(grow: Grow, cancel: &AtomicBool, output: &mut Output) -> Resul
     let pool = builder.build().map_err(|e| CliError::System(format!("cannot start the threads: {e}")))?;
     let voice = grow.voice;
     match grow.aim {
-        Aim::Folder { out, force, until } => {
+        Aim::Folder { out, existing, checkpoint_every, until } => {
             let plan = Plan::new(&grow.source, &grow.overrides)?;
-            let request = Request { plan, out, force, until };
+            let request = Request { plan, out, existing, checkpoint_every, until };
             let grown = pool.install(|| folder(&request, voice, cancel))?;
             report(&request, &grown, voice, output)
         }
@@ -62,7 +62,7 @@ fn announce(plan: &Plan, estimate: &Estimate) -> String {
 fn report(request: &Request, grown: &Grown, voice: Voice, output: &mut Output) -> Result<(), CliError> {
     let folder = grown.folder.display().to_string();
     match voice {
-        Voice::Json => output.line(grown.manifest.text().trim_end()),
+        Voice::Json => output.line(grown.manifest.trim_end()),
         Voice::Quiet => output.line(&folder),
         Voice::Normal => {
             output.line(&folder)?;

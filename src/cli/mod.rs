@@ -79,6 +79,7 @@ pub fn main(app: Option<OpenApp>) -> ExitCode {
         Err(error) => {
             match &error {
                 CliError::Closed => {}
+                CliError::Job(JobError::Stopped) => output::say(&error.to_string()),
                 CliError::Job(job) if job.cancelled() => output::say("stopped; nothing was written"),
                 error => output::complain(&error.to_string()),
             }

@@ -11,6 +11,10 @@ use super::{command::Voice, output::say};
 /// Ticks of a whole bar.
 const TICKS: u64 = 1000;
 
+fn resumed(time_yr: f64) -> String {
+    format!("goes on at {:.3} million years", time_yr * 1e-6)
+}
+
 /// Follows a job.
 pub(crate) enum Progress {
     Bar(ProgressBar),
@@ -47,6 +51,7 @@ impl Progress {
                     bar.set_position(*done as u64 * TICKS / (*of).max(1) as u64);
                     bar.set_message(format!("{done} of {of} worlds"));
                 }
+                Event::Resumed { time_yr } => bar.println(resumed(*time_yr)),
                 Event::Writing(file) => bar.set_message(format!("writing {file}")),
             },
             Progress::Lines { since } => match event {
@@ -57,6 +62,7 @@ impl Progress {
                     let (stage, of) = (moment.stage + 1, moment.stages);
                     say(&format!("{stage}/{of} {}: {} {steps}, {seconds:.1} s", moment.label, moment.step));
                 }
+                Event::Resumed { time_yr } => say(&resumed(*time_yr)),
                 Event::World { done, of } if done == of => say(&format!("{of} worlds")),
                 _ => {}
             },

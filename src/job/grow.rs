@@ -1,16 +1,17 @@
 //! `grow`: one recipe, one world, one folder.
 
 use std::{
+    fs, io,
     path::{Path, PathBuf},
     sync::atomic::AtomicBool,
-    time::Instant,
+    time::{Duration, Instant},
 };
 
 use crate::{
     export, measure,
     recipe::Plan,
     relief,
-    timeline::{Moment, StageRecord, Timeline, TimelineError},
+    timeline::{Checkpoints, Moment, StageRecord, Timeline, TimelineError},
     world::{
         World,
         store::{self, Provenance},
@@ -18,8 +19,8 @@ use crate::{
 };
 
 use super::{
-    Event, HEIGHT, JobError, Manifest, RELIEF, STORE,
-    folder::{Partial, free},
+    Event, Existing, HEIGHT, JobError, MANIFEST, Manifest, RELIEF, STORE,
+    folder::{Partial, free, newest},
     picture::write_png,
 };
 
@@ -30,8 +31,10 @@ pub struct Request {
     pub plan: Plan,
     /// The folder; a new one under `worlds/` if absent.
     pub out: Option<PathBuf>,
-    /// Replace a world that is there.
-    pub force: bool,
+    /// What is to happen where something is already.
+    pub existing: Existing,
+    /// Time between checkpoints, unless they cost much.
+    pub checkpoint_every: Duration,
     /// End after this stage.
     pub until: Option<String>,
 }
@@ -41,29 +44,64 @@ pub struct Request {
 pub struct Grown {
     /// Where it is.
     pub folder: PathBuf,
-    /// What is in it.
-    pub manifest: Manifest,
+    /// Its `manifest.json`.
+    pub manifest: String,
 }
 
-/// Runs the recipe and writes the folder; nothing is left of a run that fails or is stopped.
+/// Runs the recipe and writes the folder. Of a run that fails or is stopped only its checkpoints are left.
 pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event)) -> Result<Grown, JobError> {
     let plan = &request.plan;
     let until = request.until.as_deref().map(|name| last_stage(plan, name)).transpose()?;
-    let out = match &request.out {
-        Some(out) => out.clone(),
-        None => free(&Path::new("worlds").join(format!("{}-{}", plan.name, plan.world.seed))),
+    let stem = Path::new("worlds").join(format!("{}-{}", plan.name, plan.world.seed));
+    let out = match (&request.out, request.existing) {
+        (Some(out), _) => out.clone(),
+        (None, Existing::Resume) => newest(&stem),
+        (None, _) => free(&stem),
     };
-    let partial = Partial::begin(&out, request.force)?;
+    let ended = until.map(|stage| plan.stages[stage].label.clone());
+    if request.existing == Existing::Resume
+        && let Some(grown) = finished(plan, ended.as_deref(), &out)?
+    {
+        return Ok(grown);
+    }
+    let partial = Partial::begin(&out, request.existing)?;
     let started = Instant::now();
-    let (world, stages) = run(plan, until, cancel, &mut |moment| tell(Event::Step(moment)))?;
-    let height_png = write(plan, &world, partial.path(), cancel, tell)?;
+    let mut checkpoints = Checkpoints::new(&partial.checkpoints(), plan, request.checkpoint_every);
+    let from = checkpoints.latest().map_err(TimelineError::from)?;
+    if let Some(checkpoint) = &from {
+        tell(Event::Resumed { time_yr: checkpoint.time_yr() });
+    }
+    let mut timeline = Timeline::new(plan, cancel).until(until).keeping(&mut checkpoints).from(from);
+    let world = timeline.run(&mut [], &mut |moment| tell(Event::Step(moment)));
+    let stages = timeline.records().to_vec();
+    let kept = checkpoints.any();
+    let stopped = |error: JobError| if kept && error.cancelled() { JobError::Stopped } else { error };
+    let world = world.map_err(|error| stopped(error.into()))?;
+    let height_png = write(plan, &world, &partial.path(), cancel, tell).map_err(stopped)?;
     let mut manifest = Manifest::new(plan, &world, measure::inspect(&world), height_png);
     manifest.stages = stages;
-    manifest.until = until.map(|stage| plan.stages[stage].label.clone());
+    manifest.until = ended;
     manifest.seconds = started.elapsed().as_secs_f64();
-    manifest.write(partial.path())?;
-    check(cancel)?;
-    Ok(Grown { folder: partial.finish()?, manifest })
+    manifest.write(&partial.path())?;
+    Ok(Grown { folder: partial.finish()?, manifest: manifest.text() })
+}
+
+/// The finished world at `out`; an error if it is of another recipe.
+fn finished(plan: &Plan, until: Option<&str>, out: &Path) -> Result<Option<Grown>, JobError> {
+    let path = out.join(MANIFEST);
+    let manifest = match fs::read_to_string(&path) {
+        Err(cause) if cause.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(cause) => return Err(JobError::Disk { path, cause }),
+        Ok(text) => text,
+    };
+    let said: serde_json::Value = serde_json::from_str(&manifest).unwrap_or_default();
+    if said["recipe"] != plan.text.as_str() || said["until"].as_str() != until {
+        let shown = out.display();
+        return Err(JobError::Refused(format!(
+            "{shown}: the world there is of another recipe; choose another --out, or replace it with --force"
+        )));
+    }
+    Ok(Some(Grown { folder: out.to_owned(), manifest }))
 }
 
 /// Runs a plan without writing anything.

@@ -11,6 +11,7 @@ mod picture;
 mod sheet;
 
 pub use estimate::{Estimate, estimate};
+pub use folder::Existing;
 pub use grow::{Grown, Request, grow};
 pub use manifest::Manifest;
 pub use picture::{Picture, open_world, render};
@@ -19,7 +20,10 @@ pub use sheet::{MOST as SHEET_MOST, SheetRequest, sheet};
 use std::path::PathBuf;
 
 use crate::{
-    export::ExportError, recipe::RecipeError, relief::ReliefError, timeline::Moment, timeline::TimelineError,
+    export::ExportError,
+    recipe::RecipeError,
+    relief::ReliefError,
+    timeline::{CheckpointError, Moment, TimelineError},
     world::store::StoreError,
 };
 
@@ -37,6 +41,11 @@ pub const MANIFEST: &str = "manifest.json";
 pub enum Event<'a> {
     /// A step is done.
     Step(&'a Moment<'a>),
+    /// A stopped run goes on.
+    Resumed {
+        /// The world's clock, years.
+        time_yr: f64,
+    },
     /// One of several worlds is done.
     World {
         /// Worlds done.
@@ -60,6 +69,9 @@ pub enum JobError {
     /// The run stopped.
     #[error(transparent)]
     Timeline(#[from] TimelineError),
+    /// The user stopped it, and it can go on.
+    #[error("stopped; the same command with --resume goes on from here")]
+    Stopped,
     /// The world could not be stored or read.
     #[error(transparent)]
     Store(#[from] StoreError),
@@ -82,13 +94,15 @@ pub enum JobError {
 impl JobError {
     /// Whether the user stopped it.
     pub fn cancelled(&self) -> bool {
-        matches!(self, JobError::Timeline(TimelineError::Cancelled))
+        matches!(self, JobError::Timeline(TimelineError::Cancelled) | JobError::Stopped)
     }
 
     /// Whether the request was wrong, rather than the run.
     pub fn refused(&self) -> bool {
         match self {
             JobError::Recipe(_) | JobError::Refused(_) => true,
+            JobError::Timeline(TimelineError::Past(_)) => true,
+            JobError::Timeline(TimelineError::Checkpoint(error)) => matches!(error, CheckpointError::Foreign { .. }),
             JobError::Store(error) => matches!(error, StoreError::Absent(_)),
             _ => false,
         }

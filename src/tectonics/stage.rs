@@ -96,7 +96,6 @@ impl Process for Stage {
         let Some(run) = &mut self.run else { return Ok(Step::WHOLE) };
         let before = run.time_yr(&self.params);
         run.advance();
-        context.check()?;
         let (steps, done) = run.progress();
         if !run.finite() {
             return Err(ProcessError::Failed(format!(
@@ -160,7 +159,7 @@ impl Stage {
             }
             PlateStyle::Thesis => Run::Thesis(Box::new(thesis(&self.params, world.grid, context.key)?)),
         };
-        if let Some(resume) = self.resume.take() {
+        if let Some(resume) = self.resume {
             for _ in 0..resume.steps {
                 context.check()?;
                 run.advance();
@@ -171,6 +170,7 @@ impl Stage {
         } else if let Run::Geologic(run) = &run {
             world.ledger.open(context.stage, Matter::Crust, run.simulation.crust_m3());
         }
+        self.resume = None;
         self.run = Some(run);
         Ok(())
     }
@@ -272,7 +272,6 @@ impl Geologic {
     ) -> Result<(), ProcessError> {
         let run = &self.simulation;
         let surface = Surface::of(run, params);
-        context.check()?;
         let map_m = run.domain.map_m;
         let sea_m =
             params.land_share.map_or(world.sea_level_m, |share| surface.sea_level_for(map_m, &self.warp, share));

@@ -1,10 +1,12 @@
 //! Runs a plan: its stages in order over one world, step by step.
 //!
 //! Keeps the books of each stage, the world's clock, and the watch for values that are no numbers; stops between any two
-//! steps; shows frames to sinks. It writes no file and draws nothing.
+//! steps and keeps checkpoints from which it goes on; shows frames to sinks. It draws nothing.
 
+mod checkpoint;
 mod run;
 
+pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints, EVERY};
 pub use run::{Timeline, TimelineError};
 
 use crate::world::World;

@@ -3,12 +3,15 @@
 use std::{sync::atomic::AtomicBool, time::Instant};
 
 use crate::{
-    process::{Context, Process, ProcessError, Step},
+    process::{Context, Process, ProcessError, State, Step},
     recipe::{Plan, Stage},
     world::{Layer, Matter, World},
 };
 
-use super::{Moment, Sink, StageRecord};
+use super::{
+    Moment, Sink, StageRecord,
+    checkpoint::{Checkpoint, CheckpointError, Checkpoints, Position},
+};
 
 /// Why a run stopped.
 #[derive(Debug, thiserror::Error)]
@@ -46,6 +49,12 @@ pub enum TimelineError {
     /// A sink could not take a frame.
     #[error("{0}")]
     Sink(String),
+    /// A checkpoint could not be kept or taken up.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// The stopped run is further than this one is to go.
+    #[error("the stopped run is past the stage '{0}' already; leave out --until, or start anew with --force")]
+    Past(String),
 }
 
 /// A plan being run.
@@ -53,18 +62,32 @@ pub struct Timeline<'a> {
     plan: &'a Plan,
     cancel: &'a AtomicBool,
     until: Option<usize>,
+    checkpoints: Option<&'a mut Checkpoints>,
+    start: Option<Checkpoint>,
     records: Vec<StageRecord>,
 }
 
 impl<'a> Timeline<'a> {
     /// A run of the whole plan; `cancel` stops it between two steps.
     pub fn new(plan: &'a Plan, cancel: &'a AtomicBool) -> Self {
-        Self { plan, cancel, until: None, records: Vec::new() }
+        Self { plan, cancel, until: None, checkpoints: None, start: None, records: Vec::new() }
     }
 
     /// Ends after the stage of that place in the plan.
     pub fn until(mut self, stage: Option<usize>) -> Self {
         self.until = stage;
+        self
+    }
+
+    /// Keeps checkpoints: every now and then, and when it is stopped.
+    pub fn keeping(mut self, checkpoints: &'a mut Checkpoints) -> Self {
+        self.checkpoints = Some(checkpoints);
+        self
+    }
+
+    /// Goes on where a stopped run of the same plan was.
+    pub fn from(mut self, checkpoint: Option<Checkpoint>) -> Self {
+        self.start = checkpoint;
         self
     }
 
@@ -79,53 +102,93 @@ impl<'a> Timeline<'a> {
         sinks: &mut [&mut dyn Sink],
         progress: &mut dyn FnMut(&Moment),
     ) -> Result<World, TimelineError> {
-        let mut world = World::new(self.plan.world.grid(), self.plan.world.sea_level_m);
+        let plan = self.plan;
         let running: Vec<&Stage> =
-            self.plan.running().filter(|(i, _)| self.until.is_none_or(|end| *i <= end)).map(|(_, s)| s).collect();
-        for (index, stage) in running.iter().enumerate() {
-            let started = Instant::now();
-            let began_yr = world.time_yr;
+            plan.running().filter(|(i, _)| self.until.is_none_or(|end| *i <= end)).map(|(_, s)| s).collect();
+        let (mut world, mut from, mut state) = match self.start.take() {
+            Some(Checkpoint { position, world, state }) => (world, position, state),
+            None => (World::new(plan.world.grid(), plan.world.sea_level_m), Position::default(), None),
+        };
+        if from.stage > running.len() {
+            return Err(TimelineError::Past(running.last().map_or_else(String::new, |stage| stage.label.clone())));
+        }
+        self.records = std::mem::take(&mut from.records);
+        for (index, stage) in running.iter().enumerate().skip(from.stage) {
             let mut watch = Watch { sinks, progress, index, stages: running.len(), label: &stage.label };
-            let steps = self.stage(stage, &mut world, &mut watch)?;
-            self.records.push(StageRecord {
-                stage: stage.key.clone(),
-                kind: stage.kind.kind.to_owned(),
-                steps,
-                seconds: started.elapsed().as_secs_f64(),
-                elapsed_yr: world.time_yr - began_yr,
-            });
+            if from.step == 0 {
+                from = Position { stage: index, began_yr: world.time_yr, ..Position::default() };
+            }
+            let from = std::mem::take(&mut from);
+            let record = self.stage(stage, &mut world, (from, state.take()), &mut watch)?;
+            self.records.push(record);
         }
         // A world whose stages were all skipped still has a ground.
         world.layer_mut(Layer::Bedrock);
         Ok(world)
     }
 
-    fn stage(&self, stage: &Stage, world: &mut World, watch: &mut Watch) -> Result<u64, TimelineError> {
+    /// Runs a stage from where it is to its end.
+    fn stage(
+        &mut self,
+        stage: &Stage,
+        world: &mut World,
+        (mut at, state): (Position, Option<State>),
+        watch: &mut Watch,
+    ) -> Result<StageRecord, TimelineError> {
         let context = Context::new(self.plan.world.seed, &stage.key, self.cancel);
-        let at = |step: u64| move |error: ProcessError| stopped(stage, step, error);
-        let mut process = stage.build().map_err(at(0))?;
-        world.ledger.open(&stage.key, Matter::Rock, world.rock_m3());
-        watch.tell(0, 0.0, world);
-        for step in 1.. {
-            context.check().map_err(at(step))?;
-            let Step { done, elapsed_yr } = process.step(world, &context).map_err(at(step))?;
+        let failed = |step: u64| move |error: ProcessError| stopped(stage, step, error);
+        let (started, before) = (Instant::now(), at.seconds);
+        let mut process = stage.build().map_err(failed(at.step))?;
+        match state {
+            Some(state) => process.restore(state, &context).map_err(failed(at.step))?,
+            None => world.ledger.open(&stage.key, Matter::Rock, world.rock_m3()),
+        }
+        watch.tell(at.step, at.done, world);
+        while at.done < 1.0 {
+            at.seconds = before + started.elapsed().as_secs_f64();
+            let taken = context.check().and_then(|()| process.step(world, &context));
+            if let Err(ProcessError::Cancelled) = taken {
+                self.keep(world, &at, process.as_ref())?;
+            }
+            let Step { done, elapsed_yr } = taken.map_err(failed(at.step + 1))?;
+            (at.step, at.done) = (at.step + 1, done);
             world.time_yr += elapsed_yr;
-            find_non_finite(stage, step, process.writes(), world)?;
-            let over = done >= 1.0;
-            watch.show(process.as_mut(), world, &context, step, done).map_err(|stop| match stop {
-                Stop::Process(error) => stopped(stage, step, error),
+            find_non_finite(stage, at.step, process.writes(), world)?;
+            watch.show(process.as_mut(), world, &context, &at).map_err(|stop| match stop {
+                Stop::Process(error) => stopped(stage, at.step, error),
                 Stop::Sink(why) => TimelineError::Sink(why),
             })?;
-            if over {
-                // What the stage published last may be bad as well.
-                find_non_finite(stage, step, process.writes(), world)?;
-                world.ledger.close(&stage.key, Matter::Rock, world.rock_m3());
-                watch.tell(step, 1.0, world);
-                return Ok(step);
+            if done < 1.0 {
+                watch.tell(at.step, done, world);
+                if self.checkpoints.as_ref().is_some_and(|checkpoints| checkpoints.due()) {
+                    at.seconds = before + started.elapsed().as_secs_f64();
+                    self.keep(world, &at, process.as_ref())?;
+                }
             }
-            watch.tell(step, done, world);
         }
-        unreachable!("no run has 2^64 steps")
+        // What the stage published last may be bad as well.
+        find_non_finite(stage, at.step, process.writes(), world)?;
+        world.ledger.close(&stage.key, Matter::Rock, world.rock_m3());
+        watch.tell(at.step, 1.0, world);
+        Ok(StageRecord {
+            stage: stage.key.clone(),
+            kind: stage.kind.kind.to_owned(),
+            steps: at.step,
+            seconds: before + started.elapsed().as_secs_f64(),
+            elapsed_yr: world.time_yr - at.began_yr,
+        })
+    }
+
+    /// Keeps a checkpoint, where there is anything yet to be kept.
+    fn keep(&mut self, world: &World, at: &Position, process: &dyn Process) -> Result<(), TimelineError> {
+        let Some(checkpoints) = &mut self.checkpoints else { return Ok(()) };
+        if at.stage == 0 && at.step == 0 {
+            return Ok(());
+        }
+        let position = Position { records: self.records.clone(), ..at.clone() };
+        // A stage that has not begun begins anew.
+        let state = (at.step > 0).then(|| process.save());
+        Ok(checkpoints.save(world, &position, state.as_ref())?)
     }
 }
 
@@ -180,10 +243,9 @@ impl<'w> Watch<'w, '_> {
         process: &mut dyn Process,
         world: &mut World,
         context: &Context,
-        step: u64,
-        done: f64,
+        at: &Position,
     ) -> Result<(), Stop> {
-        let moment = self.moment(step, done, world);
+        let moment = self.moment(at.step, at.done, world);
         let wanting: Vec<bool> = self.sinks.iter_mut().map(|sink| sink.wants(&moment)).collect();
         if moment.stage_over() || wanting.contains(&true) {
             process.publish(world, context).map_err(Stop::Process)?;
@@ -283,6 +345,54 @@ mod tests {
         let mut timeline = Timeline::new(&plan, &cancel).until(Some(0));
         let world = timeline.run(&mut [], &mut |_| ()).unwrap();
         assert!(world.layer(Layer::Sediment).is_none());
+    }
+
+    #[test]
+    fn a_run_goes_on_from_any_step_to_the_same_bits() {
+        let text = format!("{TEXT}[[stage]]\nkind = \"plates\"\nduration_myr = 2\ncells = 64\nsteps = 6\n");
+        let (plan, cancel) = (plan(&text), AtomicBool::new(false));
+        let mut steps = Vec::new();
+        let whole = Timeline::new(&plan, &cancel).run(&mut [], &mut |m| steps.push((m.stage, m.step))).unwrap();
+        steps.dedup();
+        assert!(steps.len() > 10, "{steps:?}");
+        for &(stage, step) in &steps {
+            let folder = tempfile::tempdir().unwrap();
+            let mut checkpoints = Checkpoints::new(folder.path(), &plan, std::time::Duration::MAX);
+            cancel.store(false, Ordering::Relaxed);
+            let stopped = Timeline::new(&plan, &cancel).keeping(&mut checkpoints).run(&mut [], &mut |m| {
+                cancel.fetch_or((m.stage, m.step) == (stage, step), Ordering::Relaxed);
+            });
+            cancel.store(false, Ordering::Relaxed);
+            let from = checkpoints.latest().unwrap();
+            match stopped {
+                Err(TimelineError::Cancelled) => assert_eq!(from.is_none(), (stage, step) == (0, 0)),
+                // The last step leaves nothing to be stopped.
+                other => assert_eq!((other.unwrap() == whole, steps.last()), (true, Some(&(stage, step)))),
+            }
+            let mut again = Timeline::new(&plan, &cancel).keeping(&mut checkpoints).from(from);
+            assert!(again.run(&mut [], &mut |_| ()).unwrap() == whole, "stopped at stage {stage}, step {step}");
+            let records: Vec<_> = again.records().iter().map(|r| (r.steps, r.elapsed_yr)).collect();
+            assert_eq!(records.len(), 3, "{records:?}");
+        }
+    }
+
+    #[test]
+    fn a_damaged_checkpoint_gives_way_to_the_one_before() {
+        let (plan, cancel) = (plan(TEXT), AtomicBool::new(false));
+        let folder = tempfile::tempdir().unwrap();
+        let mut checkpoints = Checkpoints::new(folder.path(), &plan, std::time::Duration::ZERO);
+        let whole = Timeline::new(&plan, &cancel).keeping(&mut checkpoints).run(&mut [], &mut |_| ()).unwrap();
+        let mut kept: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+        kept.sort();
+        assert_eq!(kept, ["000003", "000004", "latest"], "the last two of four");
+        std::fs::write(folder.path().join("000004/process.bin"), "x").unwrap();
+        let from = checkpoints.latest().unwrap();
+        assert_eq!(from.as_ref().unwrap().position.step, 3);
+        let mut again = Timeline::new(&plan, &cancel).from(from);
+        assert!(again.run(&mut [], &mut |_| ()).unwrap() == whole);
+        std::fs::remove_file(folder.path().join("000003/checkpoint.json")).unwrap();
+        let line = checkpoints.latest().err().unwrap().to_string();
+        assert!(line.contains("000004: the checkpoint is damaged") && !line.contains('\n'), "{line}");
     }
 
     /// Runs one stage on ground with one parameter set; a refusal in words is fine, a panic or a bad value is not.

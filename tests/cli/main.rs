@@ -63,4 +63,9 @@ impl Place {
         files.sort();
         files
     }
+
+    /// What lies in the folder itself, hidden entries too, sorted.
+    fn entries(&self) -> Vec<String> {
+        self.files().into_iter().filter(|name| !name.contains('/')).collect()
+    }
 }

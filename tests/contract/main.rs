@@ -5,7 +5,7 @@ use std::{path::PathBuf, sync::atomic::AtomicBool};
 
 use upthrust::{
     grid::Field,
-    process::{Context, Process},
+    process::{Context, Process, ProcessError},
     recipe::{Overrides, Plan, Source, Stage, stage_kinds},
     world::{Layer, Matter, World},
 };
@@ -152,6 +152,27 @@ fn keeps_the_contract(case: &Case, stage: &Stage, start: &World) {
     }
 }
 
+/// A step that is cancelled, also one that first has to find the way back to a saved state, has changed nothing.
+fn is_cancelled_whole(case: &Case, stage: &Stage, start: &World) {
+    let (stay, stop) = (AtomicBool::new(false), AtomicBool::new(true));
+    let [go_on, cancelled] = [&stay, &stop].map(|cancel| Context::new(3, &stage.key, cancel));
+    let mut world = start.clone();
+    let mut process = stage.build().unwrap();
+    for _ in 0..2 {
+        let (before, saved) = (world.clone(), process.save());
+        match process.step(&mut world, &cancelled) {
+            Err(ProcessError::Cancelled) => assert!(world == before && process.save() == saved, "{}", case.name()),
+            other => assert!(other.is_ok(), "{}: {other:?}", case.name()),
+        }
+        if take(process.as_mut(), &mut world, &go_on, false) {
+            return;
+        }
+        let state = process.save();
+        process = stage.build().unwrap();
+        process.restore(state, &go_on).unwrap();
+    }
+}
+
 /// What a stage declares it makes, in a world that has only ground.
 fn makes_what_it_declares(case: &Case, stage: &Stage, start: &World) {
     let stay = AtomicBool::new(false);
@@ -179,6 +200,7 @@ fn every_stage_keeps_the_contract() {
             let plan = case.plan();
             let start = full_world(&plan);
             keeps_the_contract(case, &plan.stages[1], &start);
+            is_cancelled_whole(case, &plan.stages[1], &start);
             makes_what_it_declares(case, &plan.stages[1], &start);
         }
     }
