@@ -6,7 +6,7 @@
 //! - [`grid`], [`noise`], [`rmp`]: rasters in metres, keyed randomness, random partitions. Numerics only.
 //! - [`world`], [`process`]: what all solvers meet through, and what a solver looks like.
 //! - [`crust`]: how high a column of rock floats.
-//! - [`terrain`], [`tectonics`]: the stages. They never import each other.
+//! - [`terrain`], [`tectonics`], [`edit`]: the stages. They never import each other.
 //! - [`recipe`], [`timeline`]: a recipe becomes a checked plan, a plan becomes a world.
 //! - [`measure`], [`relief`], [`export`]: numbers, pictures and files of a world.
 //! - `render`: pictures on the graphics adapter (feature `render`).
@@ -25,6 +25,7 @@ pub mod process;
 
 pub mod crust;
 
+pub mod edit;
 pub mod tectonics;
 pub mod terrain;
 

@@ -40,6 +40,9 @@ pub(crate) fn run(grow: Grow, cancel: &AtomicBool, output: &mut Output) -> Resul
 }
 
 fn folder(request: &Request, voice: Voice, cancel: &AtomicBool) -> Result<Grown, CliError> {
+    if voice == Voice::Normal {
+        request.plan.notes.iter().for_each(|note| say(&format!("note: {note}")));
+    }
     if voice == Voice::Normal
         && let Some(estimate) = job::estimate(&request.plan, cancel)?
     {

@@ -4,6 +4,7 @@
 //! schema of each stage. Only what passed reaches serde. Whoever holds a [`Plan`] can trust it. This room runs nothing.
 
 mod error;
+mod imports;
 mod near;
 mod overrides;
 mod params;

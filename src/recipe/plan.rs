@@ -15,6 +15,7 @@ use crate::{
 use super::{
     Overrides, Setting, Source, StageKind, WorldParams,
     error::{Problem, RecipeError},
+    imports::Imports,
     near::nearest,
     schema::{self, Checker},
     stages,
@@ -40,6 +41,8 @@ pub struct Plan {
     pub scene: Json,
     /// The recipe as it runs, flags included.
     pub text: String,
+    /// What a person should know before it runs, a line each.
+    pub notes: Vec<String>,
 }
 
 /// One stage of a plan.
@@ -155,12 +158,15 @@ impl Plan {
         overrides.apply(&mut root)?;
         let reader = Reader { file: &source.file, folder: &source.folder };
         reader.top(&root)?;
-        let world: WorldParams = match root.get("world") {
+        let mut world: WorldParams = match root.get("world") {
             Some(node) => reader.section(node, "world", &schema::of::<WorldParams>())?,
             None => WorldParams::default(),
         };
+        let stages = reader.stages(&root)?;
+        let mut imports = Imports::find(&root, &stages, &source.file)?;
+        imports.lay_out(&mut world, &root, &source.file)?;
         reader.sides(&world, &root)?;
-        let stages = reader.stages(&root, world.grid())?;
+        reader.fit(&root, &stages, world.grid())?;
         let text = |key: &str| match root.get(key).map(|node| &node.value) {
             Some(Value::Text(text)) => Some(text.clone()),
             _ => None,
@@ -178,6 +184,7 @@ impl Plan {
             stages,
             scene,
             text: if overrides.is_empty() { source.text.clone() } else { tree::write(&root) },
+            notes: imports.notes,
         })
     }
 
@@ -275,7 +282,7 @@ impl Reader<'_> {
         Err(self.error(&place, Problem::Unfit(what)))
     }
 
-    fn stages(&self, root: &Table, grid: Grid) -> Result<Vec<Stage>, RecipeError> {
+    fn stages(&self, root: &Table) -> Result<Vec<Stage>, RecipeError> {
         let keys = stage_keys(root);
         let refuse = |place: &Place, what: &str| self.error(place, Problem::Unfit(what.into()));
         let Some(node) = root.get("stage") else {
@@ -293,13 +300,24 @@ impl Reader<'_> {
             };
             let stage = self.stage(table, &item.place, key)?;
             self.take_id(table, key, &mut ids)?;
-            self.build_once(&stage, table, item, grid, &mut layers)?;
+            self.build_once(&stage, table, &item.place, &mut layers)?;
             made.push(stage);
         }
         if made.iter().all(|stage| !stage.enabled) {
             return Err(refuse(&node.place, "no stage is enabled, so there is nothing to grow"));
         }
         Ok(made)
+    }
+
+    /// Asks every stage that runs whether it goes together with the map.
+    fn fit(&self, root: &Table, stages: &[Stage], grid: Grid) -> Result<(), RecipeError> {
+        let Some(Node { value: Value::List(items), .. }) = root.get("stage") else { return Ok(()) };
+        for (item, stage) in items.iter().zip(stages).filter(|(_, stage)| stage.enabled) {
+            let unfit =
+                |e: ProcessError| self.error(&item.place, Problem::Unfit(format!("stage '{}': {e}", stage.label)));
+            stage.build().and_then(|process| process.fit(&grid)).map_err(unfit)?;
+        }
+        Ok(())
     }
 
     fn kind(&self, table: &Table, place: &Place) -> Result<&'static StageKind, RecipeError> {
@@ -381,11 +399,9 @@ impl Reader<'_> {
         &self,
         stage: &Stage,
         table: &Table,
-        item: &Node,
-        grid: Grid,
+        place: &Place,
         layers: &mut Vec<Layer>,
     ) -> Result<(), RecipeError> {
-        let place = &item.place;
         let unfit = |e: ProcessError| self.error(place, Problem::Unfit(format!("stage '{}': {e}", stage.label)));
         let process = stage.build().map_err(unfit)?;
         if !stage.enabled {
@@ -407,7 +423,6 @@ impl Reader<'_> {
             );
             return Err(self.error(place, Problem::Unfit(what)));
         }
-        process.fit(&grid).map_err(unfit)?;
         layers.extend(process.writes());
         Ok(())
     }

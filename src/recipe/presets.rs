@@ -35,6 +35,7 @@ const ALL: &[Preset] = presets! {
     "rmp-peak"
     "rmp-ridge"
     "rmp-graph"
+    "erode-my-map"
 };
 
 /// Every preset.

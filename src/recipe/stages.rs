@@ -7,6 +7,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use serde_json::Value as Json;
 
 use crate::{
+    edit::ImportParams,
     process::{Placement, Process, ProcessError},
     tectonics::PlatesParams,
     terrain::Shape,
@@ -101,6 +102,12 @@ fn table() -> Vec<StageKind> {
         ground::<t::RmpPeakParams>("rmp_peak", "Peak", "A mountain of many random Voronoi cells about a point."),
         ground::<t::RmpRidgeParams>("rmp_ridge", "Ridge", "A range of many random Voronoi cells along a drawn line."),
         ground::<t::RmpGraphParams>("rmp_graph", "Line-cut massif", "A massif of faces between random lines."),
+        StageKind {
+            blends: true,
+            ..row("import", "Import", "Lays a heightmap from a file into the ground.", |import: ImportParams, setting| {
+                Ok(import.process(setting.placement))
+            })
+        },
         #[cfg(test)]
         ground::<super::probe::ProbeParams>("probe", "Probe", "A level ground for tests."),
         #[cfg(test)]

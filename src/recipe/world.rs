@@ -9,6 +9,10 @@ use crate::grid::{Edges, Grid};
 pub const MIN_SIDE: usize = 16;
 /// Most cells a side: 16384² cells of one layer are 1 GiB.
 pub const MAX_SIDE: usize = 16384;
+/// Least length of a map, km.
+pub const SHORTEST_KM: f64 = 0.01;
+/// Most length of a map, km: once around the Earth.
+pub const LONGEST_KM: f64 = 40075.0;
 
 /// The map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -19,11 +23,11 @@ pub struct WorldParams {
     /// Root of every random number.
     #[schemars(range(min = 0, max = 9223372036854775807u64), extend("x-effect" = "another world of the same kind"))]
     pub seed: u64,
-    /// Cells a side, or [west-east, north-south].
+    /// Cells a side, or [west-east, north-south]; those of the file where the first stage imports one.
     #[schemars(schema_with = "size_schema")]
     pub size: Size,
-    /// Length of the map from west to east.
-    #[schemars(range(min = 0.01, max = 40075.0), extend("x-unit" = "km", "x-effect" = "a larger map, with larger cells"))]
+    /// Length of the map from west to east; the file's own where the first stage imports one that tells it.
+    #[schemars(range(min = SHORTEST_KM, max = LONGEST_KM), extend("x-unit" = "km", "x-effect" = "a larger map, with larger cells"))]
     pub extent_km: f64,
     /// Height of the sea.
     #[schemars(range(min = -12000.0, max = 12000.0), extend("x-unit" = "m", "x-effect" = "less land"))]

@@ -12,7 +12,7 @@ mod table;
 pub use catalogue::{Kind, Layer, Palette, Spec};
 pub use ledger::{Account, Ledger, Matter};
 pub use mask::{Mask, MaskError};
-pub use picture::{PictureError, open_picture};
+pub use picture::{PictureError, open_picture, sample};
 pub use table::{Column, Table, Values};
 
 use std::collections::BTreeMap;

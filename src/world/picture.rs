@@ -6,6 +6,7 @@ use image::DynamicImage;
 
 /// Pictures that come with the program.
 const SAMPLES: &[(&str, &[u8])] = &[
+    ("my-heights.png", include_bytes!("../../presets/my-heights.png")),
     ("my-continents.png", include_bytes!("../../presets/my-continents.png")),
     ("my-plates.png", include_bytes!("../../presets/my-plates.png")),
 ];
@@ -21,6 +22,15 @@ pub enum PictureError {
     Unreadable(String, String),
 }
 
+/// The bytes of the sample that `sample:NAME` names.
+pub fn sample(name: &str) -> Result<&'static [u8], PictureError> {
+    let found = SAMPLES.iter().find(|(sample, _)| *sample == name).ok_or_else(|| {
+        let names: Vec<&str> = SAMPLES.iter().map(|(sample, _)| *sample).collect();
+        PictureError::NoSample(name.to_owned(), names.join(", "))
+    })?;
+    Ok(found.1)
+}
+
 /// Opens a picture file, or a sample named `sample:NAME`.
 pub fn open_picture(path: &Path) -> Result<DynamicImage, PictureError> {
     let unreadable = |e: image::ImageError| {
@@ -28,13 +38,7 @@ pub fn open_picture(path: &Path) -> Result<DynamicImage, PictureError> {
         PictureError::Unreadable(path.display().to_string(), reason)
     };
     match path.to_str().and_then(|p| p.strip_prefix("sample:")) {
-        Some(name) => {
-            let found = SAMPLES.iter().find(|(sample, _)| *sample == name).ok_or_else(|| {
-                let names: Vec<&str> = SAMPLES.iter().map(|(sample, _)| *sample).collect();
-                PictureError::NoSample(name.to_owned(), names.join(", "))
-            })?;
-            image::load_from_memory(found.1).map_err(unreadable)
-        }
+        Some(name) => image::load_from_memory(sample(name)?).map_err(unreadable),
         None => image::open(path).map_err(unreadable),
     }
 }

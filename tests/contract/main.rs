@@ -42,6 +42,8 @@ const CASES: &[Case] = &[
     case("rmp_peak", "blend = 'max'\n"),
     case("rmp_ridge", "mask = 'slope'\n"),
     case("rmp_graph", "blend = 'min'\n"),
+    case("import", ""),
+    case("import", "blend = 'max'\nsmooth = 1.0\nhigh_m = 900.0\nmask = 'slope > 10'\n"),
 ];
 
 impl Case {

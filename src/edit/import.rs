@@ -1,0 +1,234 @@
+//! The stage `import`: a heightmap file becomes bedrock.
+//!
+//! Read, filled, smoothed if asked for, all at the file's own cells, then brought to the map's.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    EditError, Problem,
+    fill::fill,
+    read::{self, Header, Heightmap, Scale},
+    unstep::unstep,
+};
+use crate::{
+    grid::{Edges, Field, Grid, Points, resample},
+    process::{Context, Placement, Process, ProcessError, State, Step},
+    world::{Layer, World},
+};
+
+/// Height of white where neither file nor recipe states one, m.
+const WHITE_M: f64 = 2000.0;
+
+/// A heightmap from a file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ImportParams {
+    /// The heightmap: .png .tif .exr .r16 .r32 .raw .asc .hgt, or `sample:my-heights.png`.
+    #[schemars(extend("x-path" = true, "x-effect" = "another land"))]
+    pub path: String,
+    /// What the file is; auto goes by its name and checks the content.
+    #[schemars(extend("x-effect" = "for files whose name does not tell"))]
+    pub format: SourceFormat,
+    /// Cells of a raw file, [west-east, north-south]; a square if not given.
+    #[schemars(inner(range(min = 2, max = 16384)), extend("x-unit" = "cells", "x-effect" = "cuts the same bytes into other rows"))]
+    pub size: Option<[u32; 2]>,
+    /// Order of the bytes in a raw file.
+    #[schemars(extend("x-effect" = "little is usual; big is what old Macintoshes wrote"))]
+    pub endian: Endian,
+    /// Height of black (of 0 in a file of fractions); 0 if neither given nor stated by the file.
+    #[schemars(range(min = -12000.0, max = 20000.0), extend("x-unit" = "m", "x-effect" = "higher lowlands"))]
+    pub low_m: Option<f64>,
+    /// Height of white (of 1 in a file of fractions); 2000 m above black if neither given nor stated by the file.
+    #[schemars(range(min = -12000.0, max = 20000.0), extend("x-unit" = "m", "x-effect" = "higher mountains"))]
+    pub high_m: Option<f64>,
+    /// How far a height may move to take out the stairs of few bits, in half steps of the file: 1 is enough for 8 bits.
+    #[schemars(range(min = 0.0, max = 8.0), extend("x-unit" = "1", "x-effect" = "smoother slopes, less detail"))]
+    pub smooth: f64,
+    /// What to do about cells without a height.
+    #[schemars(extend("x-effect" = "fill: a membrane between their neighbours; refuse: an error"))]
+    pub no_data: NoData,
+}
+
+/// What an imported file is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum SourceFormat {
+    /// By its name.
+    #[default]
+    Auto,
+    /// PNG, 8 or 16 bits.
+    Png,
+    /// TIFF or GeoTIFF.
+    Tiff,
+    /// OpenEXR.
+    Exr,
+    /// Raw 16-bit whole numbers.
+    R16,
+    /// Raw 32-bit fractions, in metres.
+    R32,
+    /// ESRI ASCII grid.
+    Asc,
+    /// SRTM tile.
+    Hgt,
+}
+
+/// Order of bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Endian {
+    /// Least byte first.
+    #[default]
+    Little,
+    /// Greatest byte first.
+    Big,
+}
+
+/// What happens to cells without a height.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum NoData {
+    /// They are filled smoothly from their neighbours.
+    #[default]
+    Fill,
+    /// The file is refused.
+    Refuse,
+}
+
+impl Default for ImportParams {
+    fn default() -> Self {
+        Self {
+            path: "sample:my-heights.png".to_owned(),
+            format: SourceFormat::Auto,
+            size: None,
+            endian: Endian::Little,
+            low_m: None,
+            high_m: None,
+            smooth: 0.0,
+            no_data: NoData::Fill,
+        }
+    }
+}
+
+impl ImportParams {
+    /// The stage as a process.
+    pub fn process(self, placement: Placement) -> Box<dyn Process> {
+        Box::new(Import { params: self, placement })
+    }
+
+    /// What the file says of itself; reads no heights.
+    pub fn probe(&self) -> Result<Header, EditError> {
+        self.named(&self.path, || {
+            let mut source = read::open(&self.path)?;
+            let header = read::header(&mut source, self)?;
+            self.scale(&header)?;
+            Ok(header)
+        })
+    }
+
+    /// The file's heights at its own cells, filled and smoothed as asked for.
+    pub fn read(&self) -> Result<Heightmap, EditError> {
+        self.named(&self.path, || self.decode(read::open(&self.path)?))
+    }
+
+    /// The same from bytes at hand, under a name whose ending tells the format.
+    pub fn read_bytes(&self, name: &str, bytes: Vec<u8>) -> Result<Heightmap, EditError> {
+        self.named(name, || self.decode(read::Source::bytes(name, bytes)))
+    }
+
+    fn named<T>(&self, file: &str, read: impl FnOnce() -> Result<T, Problem>) -> Result<T, EditError> {
+        read().map_err(|problem| EditError { file: file.to_owned(), problem })
+    }
+
+    fn decode(&self, mut source: read::Source) -> Result<Heightmap, Problem> {
+        let header = read::header(&mut source, self)?;
+        let scale = self.scale(&header)?;
+        let mut map = read::heights(&mut source, &header, &scale, self)?;
+        let holes = map.heights.iter().filter(|v| v.is_nan()).count();
+        if holes == map.heights.len() {
+            return Err(Problem::NoHeights);
+        }
+        if holes > 0 {
+            if self.no_data == NoData::Refuse {
+                let first = map.heights.iter().position(|v| v.is_nan()).unwrap_or(0);
+                return Err(Problem::Holes(holes, first % map.width, first / map.width));
+            }
+            fill(&mut map.heights, map.width, map.height);
+        }
+        if self.smooth > 0.0 && map.step_m > 0.0 {
+            unstep(&mut map.heights, map.width, 0.5 * map.step_m * self.smooth as f32);
+        }
+        Ok(map)
+    }
+
+    /// Which height a value of the file stands for.
+    fn scale(&self, header: &Header) -> Result<Scale, Problem> {
+        let stated = header.metres && self.low_m.is_none() && self.high_m.is_none();
+        if stated {
+            return Ok(Scale { black: 0.0, low_m: 0.0, per_value_m: 1.0, step_m: header.sample.step() });
+        }
+        let (black, white) = header.sample.ends();
+        let low_m = self.low_m.unwrap_or(0.0);
+        let high_m = self.high_m.unwrap_or(low_m + WHITE_M);
+        if low_m >= high_m {
+            return Err(Problem::Levels(low_m, high_m));
+        }
+        let per_value_m = (high_m - low_m) / (white - black);
+        Ok(Scale { black, low_m, per_value_m, step_m: header.sample.step() * per_value_m })
+    }
+
+    /// What a person should know before the run, a line each.
+    pub fn remarks(&self, header: &Header) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if header.sample.bits() <= 8 && self.smooth == 0.0 {
+            remarks.push(format!(
+                "{}: 8 bits hold 256 heights, which show as stairs on slopes; smooth = 1 takes them out",
+                self.path
+            ));
+        }
+        if !header.metres && self.low_m.is_none() && self.high_m.is_none() {
+            remarks.push(format!(
+                "{}: the file does not say how high it is; black is taken for 0 m and white for {WHITE_M} m (low_m, high_m)",
+                self.path
+            ));
+        }
+        remarks
+    }
+
+    fn over(&self, grid: Grid) -> Result<Field<f32>, EditError> {
+        let map = self.read()?;
+        // Cells of one unit: only the numbers of cells matter for bringing one raster to another.
+        let edges = if grid.edges == Edges::Wrap { Edges::Wrap } else { Edges::Open };
+        let own = Grid { width: map.width, height: map.height, cell_m: 1.0, edges };
+        let heights = Field { grid: own, data: map.heights };
+        Ok(Field { grid, data: resample(&heights, grid.width, grid.height, Points::Centres) })
+    }
+}
+
+struct Import {
+    params: ImportParams,
+    placement: Placement,
+}
+
+impl Process for Import {
+    fn writes(&self) -> &'static [Layer] {
+        &[Layer::Bedrock]
+    }
+
+    fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
+        context.check()?;
+        let ground = self.placement.over(world)?;
+        let heights = self.params.over(world.grid).map_err(|e| ProcessError::Unfit(e.to_string()))?;
+        context.check()?;
+        ground.put(&heights, world, context);
+        Ok(Step::WHOLE)
+    }
+
+    fn save(&self) -> State {
+        State::default()
+    }
+
+    fn restore(&mut self, _state: State, _context: &Context) -> Result<(), ProcessError> {
+        Ok(())
+    }
+}
