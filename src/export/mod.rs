@@ -3,12 +3,15 @@
 //! | ending | holds | written by |
 //! |---|---|---|
 //! | `.png` | heights, 16-bit grayscale | [`write_height_png`] |
+//! | `.glb` `.obj` `.stl` | the ground as a mesh | [`write_mesh`] |
 //!
 //! A file is written beside its place and moved there when it is whole. This room reads worlds and never changes them.
 
 mod height_png;
+mod mesh;
 
 pub use height_png::{HeightRange, write_height_png};
+pub use mesh::{MESH_SIDES, MeshFormat, MeshOptions, write_glb, write_mesh, write_obj, write_stl};
 
 use std::{
     fs::{self, File},
@@ -27,6 +30,9 @@ pub enum ExportError {
         /// What the system said.
         cause: io::Error,
     },
+    /// What is written to took no more.
+    #[error("cannot write: {0}")]
+    Stream(#[from] io::Error),
     /// The picture could not be encoded.
     #[error("{path}: cannot encode the picture: {cause}")]
     Encode {

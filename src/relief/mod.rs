@@ -123,6 +123,12 @@ pub fn map(world: &World, view: &View, options: &Options) -> Result<RgbImage, Re
     Ok(canvas.into_image())
 }
 
+/// The flat colours of heights on maps of this world: linear red, green and blue, 0 to 1.
+pub fn tints(world: &World) -> impl Fn(f32) -> [f32; 3] {
+    let scene = tint::Scene::new(&world.height(), world.sea_level_m);
+    move |height_m| scene.at(height_m)
+}
+
 /// The vertical exaggeration that a map of this world would choose; a film puts that of one frame into all.
 pub fn exaggeration(world: &World, options: &Options) -> f64 {
     let frame = Frame::new(world.grid, options.max_px, options.min_px);

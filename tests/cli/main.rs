@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod grow;
+mod import;
 mod interrupt;
 mod reference;
 

@@ -1,5 +1,8 @@
 //! One contract for every stage in the registry, none left out: it changes only the layers it declares and makes those,
-//! gives the same bits when it is stopped, saved and continued, ends with finite heights and with closed books.
+//! gives the same bits when it is stopped, saved and continued, ends with finite heights and with closed books. And what
+//! comes from outside (`hostile`) is refused in one line.
+
+mod hostile;
 
 use std::{path::PathBuf, sync::atomic::AtomicBool};
 

@@ -1,0 +1,8 @@
+//! See `entry_points.rs`.
+#![no_main]
+
+#[allow(dead_code, reason = "each target uses one entry point")]
+#[path = "../entry_points.rs"]
+mod entry_points;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| entry_points::recipe(bytes));
