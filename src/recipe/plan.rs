@@ -162,9 +162,11 @@ impl Plan {
             Some(node) => reader.section(node, "world", &schema::of::<WorldParams>())?,
             None => WorldParams::default(),
         };
+        reader.sides(&world, &root)?;
         let stages = reader.stages(&root)?;
         let mut imports = Imports::find(&root, &stages, &source.file)?;
         imports.lay_out(&mut world, &root, &source.file)?;
+        // A file can be a sliver too.
         reader.sides(&world, &root)?;
         reader.fit(&root, &stages, world.grid())?;
         let text = |key: &str| match root.get(key).map(|node| &node.value) {

@@ -28,7 +28,7 @@ fn a_flag_brings_a_file_and_the_file_its_size() {
     let said = place.run(&["grow", "erode-my-map", "--set", "import.path=mine.png", "--out", "w"]);
     assert_eq!(said.code, 0, "{}", said.err);
     let said = place.run(&["inspect", "w"]);
-    assert!(said.out.starts_with("size        60 x 30 cells of 1 km"), "{}", said.out);
+    assert!(said.out.starts_with("size        60 x 30 cells of 1000 m"), "{}", said.out);
     // Another size shows the same land, so it keeps its shape.
     let said = place.run(&["grow", "erode-my-map", "--set", "import.path=mine.png", "--size", "128", "--out", "v"]);
     assert_eq!(said.code, 0, "{}", said.err);

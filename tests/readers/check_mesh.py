@@ -29,7 +29,7 @@ np.testing.assert_allclose(land.extents[[0, 2]], extent_m, rtol=1e-6)
 slack = 0.05 * (high_m - low_m)
 assert low_m - slack < land.bounds[0][1] and land.bounds[1][1] < high_m + slack
 assert (land.face_normals[:, 1] > 0).all(), "a triangle faces down"
-colours = land.visual.vertex_colors
+colours = land.visual.vertex_attributes["color"]
 assert len(np.unique(colours, axis=0)) > 50, "the land has hardly any colour"
 
 text = trimesh.load(obj, process=False)

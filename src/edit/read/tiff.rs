@@ -18,10 +18,10 @@ const EXPANSION: u64 = 2732;
 const ENTRY_BYTES: usize = 1 << 20;
 /// Most bytes of one strip or tile as it stands in the file.
 const STRIP_BYTES: usize = 1 << 30;
-/// Most channels that are read past on the way to the first.
-const MOST_CHANNELS: u64 = 8;
-/// What an undeclared -32768 stands for in signed 16-bit heights.
-const VOID: f64 = i16::MIN as f64;
+/// Most bytes of a picture's values: the largest map in 32-bit values, or in colour with 8.
+const PICTURE_BYTES: u64 = MOST_SIDE * MOST_SIDE * 4;
+/// What stands for no height where a file does not declare it: no land is that deep, or exactly that deep in fractions.
+const VOIDS: [f64; 3] = [-32768.0, -32767.0, -9999.0];
 
 // Keys of GeoTIFF's directory (OGC 19-008), and the codes used here.
 const MODEL_TYPE: u16 = 1024;
@@ -47,7 +47,13 @@ pub(super) fn header(input: &mut dyn Input, length: u64) -> Result<Header, Probl
 pub(super) fn heights(input: &mut dyn Input, header: &Header, scale: &Scale) -> Result<Vec<f32>, Problem> {
     let mut tiff = open(input)?;
     let (channels, alpha) = channels(tiff.colortype().map_err(problem)?)?;
-    let no_data = no_data(&mut tiff)?.or((header.sample == Sample::Signed(16)).then_some(VOID));
+    let declared = no_data(&mut tiff)?;
+    let voids = match header.sample {
+        Sample::Whole(_) => &[],
+        Sample::Signed(_) => &VOIDS[..2],
+        Sample::Fraction(_) => &VOIDS[..],
+    };
+    let void = |value: f64| declared.map_or_else(|| voids.contains(&value), |declared| value == declared);
     let cells = header.width * header.height;
     let mut values = tiff.read_image().map_err(problem)?;
     // Planes one after the other: the decoder gives the first alone.
@@ -56,7 +62,7 @@ pub(super) fn heights(input: &mut dyn Input, header: &Header, scale: &Scale) -> 
     let pixel = |at: &dyn Fn(usize) -> f64| {
         let hidden = alpha && channels > 1 && at(channels - 1) == 0.0;
         let gray = if channels >= 3 { luminance(at(0), at(1), at(2)) } else { at(0) };
-        if hidden || Some(gray) == no_data { f32::NAN } else { scale.height(gray) }
+        if hidden || void(gray) { f32::NAN } else { scale.height(gray) }
     };
     fn each<T: Copy>(
         values: &[T],
@@ -82,7 +88,7 @@ pub(super) fn heights(input: &mut dyn Input, header: &Header, scale: &Scale) -> 
 
 fn open(input: &mut dyn Input) -> Result<Tiff<'_>, Problem> {
     let mut limits = Limits::default();
-    limits.decoding_buffer_size = (MOST_SIDE * MOST_SIDE * MOST_CHANNELS * 8) as usize;
+    limits.decoding_buffer_size = PICTURE_BYTES as usize;
     limits.intermediate_buffer_size = STRIP_BYTES;
     limits.ifd_value_size = ENTRY_BYTES;
     Ok(Decoder::new(input).map_err(problem)?.with_limits(limits))
