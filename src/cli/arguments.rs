@@ -58,6 +58,30 @@ pub(crate) struct RawGrow {
     /// Threads to use; the world is the same for any number [default: one a core]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub threads: Option<String>,
+    /// Film the run: .mp4 .webm .mpg .mov .gif .png, or frames/%05d.png [default: a film in the world's folder]
+    #[arg(long, value_name = "FILE", num_args = 0..=1)]
+    pub video: Option<Option<PathBuf>>,
+    /// Frames a second of the film [default: 30]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub fps: Option<String>,
+    /// Size of the film, pixels [default: 1280x720]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
+    pub video_size: Option<String>,
+    /// What the film shows: relief, or a layer [default: relief]
+    #[arg(long, value_name = "relief|LAYER")]
+    pub view: Option<String>,
+    /// Show the time in the film
+    #[arg(long)]
+    pub clock: bool,
+    /// What ffmpeg is told besides, in one text
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
+    pub ffmpeg_args: Option<String>,
+    /// Write numbered 16-bit heightmaps of the run into a new folder, all with one range
+    #[arg(long, value_name = "DIR")]
+    pub frames: Option<PathBuf>,
+    /// A heightmap every so many steps [default: 1]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub every: Option<String>,
     /// Replace the world that --out names
     #[arg(long)]
     pub force: bool,
@@ -112,7 +136,7 @@ pub(crate) struct RawInspect {
 pub(crate) struct RawRender {
     /// The world's folder, or the store in it
     pub world: PathBuf,
-    /// The picture (PNG)
+    /// The picture (PNG or JPEG)
     pub file: PathBuf,
     /// What to draw: relief, or a layer
     #[arg(long, value_name = "relief|LAYER", default_value = "relief")]

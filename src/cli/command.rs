@@ -3,7 +3,10 @@
 use std::{ops::RangeInclusive, path::PathBuf, time::Duration};
 
 use crate::{
-    job::{Existing, Picture, SHEET_MOST},
+    job::{
+        Existing, Picture, SHEET_MOST,
+        film::{FilmRequest, FramesRequest},
+    },
     recipe::{Overrides, Source, find_stage, nearest, stage_kinds},
     timeline,
 };
@@ -11,6 +14,7 @@ use crate::{
 use super::{
     CliError,
     arguments::{RawApp, RawCommand, RawGrow, RawInspect, RawParams},
+    film,
 };
 
 /// The recipe of a bare `grow`.
@@ -40,8 +44,19 @@ pub(crate) struct Grow {
 /// A world's folder or a sheet.
 #[derive(Debug)]
 pub(crate) enum Aim {
-    Folder { out: Option<PathBuf>, existing: Existing, checkpoint_every: Duration, until: Option<String> },
+    Folder(Folder),
     Sheet { seeds: RangeInclusive<u64>, file: PathBuf },
+}
+
+/// A world's folder, and what is made while it grows.
+#[derive(Debug)]
+pub(crate) struct Folder {
+    pub out: Option<PathBuf>,
+    pub existing: Existing,
+    pub checkpoint_every: Duration,
+    pub until: Option<String>,
+    pub film: Option<FilmRequest>,
+    pub frames: Option<FramesRequest>,
 }
 
 /// How much is said.
@@ -62,7 +77,7 @@ pub(crate) enum Params {
     Markdown,
 }
 
-fn wrong<T>(what: impl Into<String>) -> Result<T, CliError> {
+pub(super) fn wrong<T>(what: impl Into<String>) -> Result<T, CliError> {
     Err(CliError::Request(what.into()))
 }
 
@@ -91,7 +106,7 @@ fn grow(raw: RawGrow) -> Result<Grow, CliError> {
         (false, true) => Voice::Quiet,
         _ => Voice::Normal,
     };
-    let aim = match (raw.seeds, raw.sheet) {
+    let aim = match (&raw.seeds, &raw.sheet) {
         (None, None) => {
             let existing = match (raw.force, raw.resume) {
                 (true, true) => return wrong("--force starts anew and --resume goes on: give one of them"),
@@ -100,7 +115,8 @@ fn grow(raw: RawGrow) -> Result<Grow, CliError> {
                 (false, false) => Existing::Refuse,
             };
             let checkpoint_every = raw.checkpoint_every.as_deref().map_or(Ok(timeline::EVERY), seconds)?;
-            Aim::Folder { out: raw.out, existing, checkpoint_every, until: raw.until }
+            let (film, frames) = (film::film(&raw)?, film::frames(&raw)?);
+            Aim::Folder(Folder { out: raw.out, existing, checkpoint_every, until: raw.until, film, frames })
         }
         (Some(_), None) => return wrong("--seeds draws a contact sheet; name it with --sheet FILE.png"),
         (None, Some(_)) => return wrong("--sheet draws several seeds; name them with --seeds A..B"),
@@ -113,11 +129,13 @@ fn grow(raw: RawGrow) -> Result<Grow, CliError> {
                 ("--force", raw.force),
                 ("--resume", raw.resume),
                 ("--checkpoint-every", raw.checkpoint_every.is_some()),
+                ("--video", raw.video.is_some()),
+                ("--frames", raw.frames.is_some()),
             ];
             if let Some((flag, _)) = other.iter().find(|(_, given)| *given) {
                 return wrong(format!("{flag} does not go with --sheet, which grows no folder"));
             }
-            Aim::Sheet { seeds: seed_range(&seeds)?, file }
+            Aim::Sheet { seeds: seed_range(seeds)?, file: file.clone() }
         }
     };
     let source = Source::find(&raw.recipe)?;

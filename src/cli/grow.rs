@@ -9,7 +9,7 @@ use crate::{
 
 use super::{
     CliError,
-    command::{Aim, Grow, Voice},
+    command::{Aim, Folder, Grow, Voice},
     output::{Output, say},
     progress::Progress,
 };
@@ -23,11 +23,17 @@ pub(crate) fn run(grow: Grow, cancel: &AtomicBool, output: &mut Output) -> Resul
     let pool = builder.build().map_err(|e| CliError::System(format!("cannot start the threads: {e}")))?;
     let voice = grow.voice;
     match grow.aim {
-        Aim::Folder { out, existing, checkpoint_every, until } => {
+        Aim::Folder(Folder { out, existing, checkpoint_every, until, film, frames }) => {
             let plan = Plan::new(&grow.source, &grow.overrides)?;
-            let request = Request { plan, out, existing, checkpoint_every, until };
-            let grown = pool.install(|| folder(&request, voice, cancel))?;
-            report(&request, &grown, voice, output)
+            let request = Request { plan, out, existing, checkpoint_every, until, film, frames };
+            let mut grown = pool.install(|| folder(&request, voice, cancel))?;
+            let failures = std::mem::take(&mut grown.failures);
+            report(&request, &grown, voice, output)?;
+            // The world is there; what was asked for besides is not.
+            match failures.into_iter().next() {
+                Some(failure) => Err(failure.into()),
+                None => Ok(()),
+            }
         }
         Aim::Sheet { seeds, file } => {
             let request = SheetRequest { source: grow.source, overrides: grow.overrides, seeds, file };
@@ -69,6 +75,9 @@ fn report(request: &Request, grown: &Grown, voice: Voice, output: &mut Output) -
         Voice::Quiet => output.line(&folder),
         Voice::Normal => {
             output.line(&folder)?;
+            for film in &grown.films {
+                output.line(&film.display().to_string())?;
+            }
             let quoted = if folder.contains(' ') { format!("'{folder}'") } else { folder };
             let next = request.plan.world.seed.wrapping_add(1);
             output.line(&format!("  upthrust inspect {quoted}"))?;

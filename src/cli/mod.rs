@@ -7,6 +7,7 @@
 mod arguments;
 mod command;
 mod desktop;
+mod film;
 mod grow;
 mod output;
 mod progress;

@@ -36,7 +36,9 @@ pub(crate) fn params(what: &Params, output: &mut Output) -> Result<(), CliError>
                 let title = format!("{}: {}", stage.kind, stage.about);
                 table(&title, &recipe::parameters(stage), output)?;
                 let blend = if stage.blends { " blend" } else { "" };
-                output.line(&format!("\nEvery stage also knows: id enabled mask steps{blend}"))
+                output.line(&format!(
+                    "\nEvery stage also knows: id enabled mask steps film_seconds film_yr_per_s film_s_per_s{blend}"
+                ))
             }
             None => Ok(()),
         },

@@ -9,7 +9,10 @@ use image::{ExtendedColorType, ImageEncoder, codecs::png};
 use serde::Serialize;
 
 use super::{ExportError, write_whole};
-use crate::{grid::for_each_row, world::World};
+use crate::{
+    grid::{Field, for_each_row},
+    world::World,
+};
 
 /// The heights that black and white stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -29,13 +32,30 @@ pub fn write_height_png(world: &World, path: &Path) -> Result<HeightRange, Expor
     };
     let black_m = low as f64;
     let range = HeightRange { black_m, white_m: if high > low { high as f64 } else { black_m + 1.0 } };
+    write(&height, range, path)?;
+    Ok(range)
+}
+
+/// Writes the world's heights over a range that is given; returns how many cells were lower or higher than that.
+pub fn write_height_png_within(world: &World, range: HeightRange, path: &Path) -> Result<u64, ExportError> {
+    let height = world.height();
+    if let Some((x, y)) = height.first_non_finite() {
+        return Err(ExportError::NotFinite { x, y });
+    }
+    let (black, white) = (range.black_m as f32, range.white_m as f32);
+    let cut = height.data.iter().filter(|&&h| h < black || h > white).count() as u64;
+    write(&height, range, path)?;
+    Ok(cut)
+}
+
+fn write(height: &Field<f32>, range: HeightRange, path: &Path) -> Result<(), ExportError> {
     let per_m = 65535.0 / (range.white_m - range.black_m);
-    let (width, rows) = (world.grid.width, world.grid.height);
-    let mut samples = vec![0u16; world.grid.cells()];
+    let (width, rows) = (height.grid.width, height.grid.height);
+    let mut samples = vec![0u16; height.grid.cells()];
     for_each_row(&mut samples, width, |y, row| {
         for (sample, &h) in row.iter_mut().zip(height.row(y)) {
-            // In range by construction; half up.
-            *sample = ((h as f64 - black_m) * per_m + 0.5) as u16;
+            // Half up; what lies beyond the range is cut off by the conversion.
+            *sample = ((h as f64 - range.black_m) * per_m + 0.5) as u16;
         }
     });
     // The encoder takes native byte order and turns it to PNG's.
@@ -44,8 +64,7 @@ pub fn write_height_png(world: &World, path: &Path) -> Result<HeightRange, Expor
         png::PngEncoder::new_with_quality(file, png::CompressionType::Fast, png::FilterType::Up)
             .write_image(bytes, width as u32, rows as u32, ExtendedColorType::L16)
             .map_err(|e| ExportError::Encode { path: path.to_owned(), cause: e.to_string() })
-    })?;
-    Ok(range)
+    })
 }
 
 #[cfg(test)]

@@ -4,13 +4,15 @@
 //! |---|---|---|
 //! | `.png` | heights, 16-bit grayscale | [`write_height_png`] |
 //! | `.glb` `.obj` `.stl` | the ground as a mesh | [`write_mesh`] |
+//! | films | pictures in time order | [`video`] |
 //!
 //! A file is written beside its place and moved there when it is whole. This room reads worlds and never changes them.
 
 mod height_png;
 mod mesh;
+pub mod video;
 
-pub use height_png::{HeightRange, write_height_png};
+pub use height_png::{HeightRange, write_height_png, write_height_png_within};
 pub use mesh::{MESH_SIDES, MeshFormat, MeshOptions, write_glb, write_mesh, write_obj, write_stl};
 
 use std::{
@@ -39,6 +41,17 @@ pub enum ExportError {
         /// The file.
         path: PathBuf,
         /// What the encoder said.
+        cause: String,
+    },
+    /// A film was asked for that cannot be made.
+    #[error("{0}")]
+    FilmRequest(String),
+    /// A film could not be finished.
+    #[error("{path}: {cause}")]
+    Film {
+        /// The film.
+        path: PathBuf,
+        /// What went wrong, in the words of whoever made it.
         cause: String,
     },
     /// The heights hold a value that is not a number.

@@ -11,7 +11,7 @@ use crate::{
     export, measure,
     recipe::Plan,
     relief,
-    timeline::{Checkpoints, Moment, StageRecord, Timeline, TimelineError},
+    timeline::{Checkpoints, Moment, Sink, StageRecord, Timeline, TimelineError},
     world::{
         World,
         store::{self, Provenance},
@@ -20,6 +20,7 @@ use crate::{
 
 use super::{
     Event, Existing, HEIGHT, JobError, MANIFEST, Manifest, RELIEF, STORE,
+    film::{Film, FilmPlan, FilmRequest, FilmSink, FramesRequest, HeightFrames},
     folder::{Partial, free, newest},
     picture::write_png,
 };
@@ -37,15 +38,23 @@ pub struct Request {
     pub checkpoint_every: Duration,
     /// End after this stage.
     pub until: Option<String>,
+    /// A film of the run.
+    pub film: Option<FilmRequest>,
+    /// Heightmaps of the run.
+    pub frames: Option<FramesRequest>,
 }
 
 /// What was grown.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Grown {
     /// Where it is.
     pub folder: PathBuf,
     /// Its `manifest.json`.
     pub manifest: String,
+    /// Films and frames that were made outside the folder, and the film in it.
+    pub films: Vec<PathBuf>,
+    /// Why films or frames that were asked for are not there; the world is, all the same.
+    pub failures: Vec<JobError>,
 }
 
 /// Runs the recipe and writes the folder. Of a run that fails or is stopped only its checkpoints are left.
@@ -64,26 +73,43 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     {
         return Ok(grown);
     }
+    // What cannot be done is said before anything is begun.
+    let film = request.film.as_ref().map(|film| FilmPlan::new(film, plan, until, cancel)).transpose()?;
     let partial = Partial::begin(&out, request.existing)?;
+    let mut frames =
+        request.frames.as_ref().map(|frames| HeightFrames::begin(frames, plan, until, cancel)).transpose()?;
+    let film = film.map(|film| Film::new(&film.within(&partial.path()), plan.world.grid())).transpose()?;
+    let mut film = film.map(FilmSink::new);
     let started = Instant::now();
     let mut checkpoints = Checkpoints::new(&partial.checkpoints(), plan, request.checkpoint_every);
     let from = checkpoints.latest().map_err(TimelineError::from)?;
     if let Some(checkpoint) = &from {
         tell(Event::Resumed { time_yr: checkpoint.time_yr() });
     }
+    let mut sinks: Vec<&mut dyn Sink> = Vec::new();
+    sinks.extend(film.as_mut().map(|film| film as &mut dyn Sink));
+    sinks.extend(frames.as_mut().map(|frames| frames as &mut dyn Sink));
     let mut timeline = Timeline::new(plan, cancel).until(until).keeping(&mut checkpoints).from(from);
-    let world = timeline.run(&mut [], &mut |moment| tell(Event::Step(moment)));
+    let world = timeline.run(&mut sinks, &mut |moment| tell(Event::Step(moment)));
     let stages = timeline.records().to_vec();
     let kept = checkpoints.any();
     let stopped = |error: JobError| if kept && error.cancelled() { JobError::Stopped } else { error };
     let world = world.map_err(|error| stopped(error.into()))?;
+    let (mut films, mut failures) = (Vec::new(), Vec::new());
+    for end in [film.map(FilmSink::finish), frames.map(HeightFrames::finish)].into_iter().flatten() {
+        match end {
+            // What was made within the folder moves with it.
+            Ok(made) => films.push(made.strip_prefix(partial.path()).map(|inner| out.join(inner)).unwrap_or(made)),
+            Err(failure) => failures.push(failure),
+        }
+    }
     let height_png = write(plan, &world, &partial.path(), cancel, tell).map_err(stopped)?;
     let mut manifest = Manifest::new(plan, &world, measure::inspect(&world), height_png);
     manifest.stages = stages;
     manifest.until = ended;
     manifest.seconds = started.elapsed().as_secs_f64();
     manifest.write(&partial.path())?;
-    Ok(Grown { folder: partial.finish()?, manifest: manifest.text() })
+    Ok(Grown { folder: partial.finish()?, manifest: manifest.text(), films, failures })
 }
 
 /// The finished world at `out`; an error if it is of another recipe.
@@ -101,7 +127,7 @@ fn finished(plan: &Plan, until: Option<&str>, out: &Path) -> Result<Option<Grown
             "{shown}: the world there is of another recipe; choose another --out, or replace it with --force"
         )));
     }
-    Ok(Some(Grown { folder: out.to_owned(), manifest }))
+    Ok(Some(Grown { folder: out.to_owned(), manifest, films: Vec::new(), failures: Vec::new() }))
 }
 
 /// Runs a plan without writing anything.

@@ -4,6 +4,7 @@
 //! arguments.
 
 mod estimate;
+pub mod film;
 mod folder;
 mod grow;
 mod manifest;
@@ -103,6 +104,7 @@ impl JobError {
             JobError::Recipe(_) | JobError::Refused(_) => true,
             JobError::Timeline(TimelineError::Past(_)) => true,
             JobError::Timeline(TimelineError::Checkpoint(error)) => matches!(error, CheckpointError::Foreign { .. }),
+            JobError::Export(ExportError::FilmRequest(_)) => true,
             JobError::Store(error) => matches!(error, StoreError::Absent(_)),
             _ => false,
         }

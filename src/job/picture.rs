@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use image::{ExtendedColorType, ImageEncoder, codecs::png};
+use image::{
+    ExtendedColorType, ImageEncoder,
+    codecs::{jpeg, png},
+};
 
 use crate::{
     export,
@@ -15,6 +18,9 @@ use crate::{
 };
 
 use super::{JobError, STORE, folder::plain};
+
+/// Fine lines and letters stay clean.
+const JPEG_QUALITY: u8 = 92;
 
 /// A picture to be drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,11 +57,11 @@ pub fn render(picture: &Picture) -> Result<PathBuf, JobError> {
         return Err(JobError::Refused(format!("--view {}: {what}", picture.view)));
     }
     let options = relief::Options { overlay: picture.overlay, title: Some(provenance.name), ..Default::default() };
-    write_png(&relief::map(&world, &view, &options)?, &picture.file)?;
+    write_picture(&relief::map(&world, &view, &options)?, &picture.file)?;
     Ok(picture.file.clone())
 }
 
-fn view(name: &str) -> Result<relief::View, JobError> {
+pub(crate) fn view(name: &str) -> Result<relief::View, JobError> {
     if name == "relief" {
         return Ok(relief::View::Relief);
     }
@@ -78,13 +84,39 @@ pub(crate) fn write_png(picture: &image::RgbImage, path: &Path) -> Result<(), Jo
     })?)
 }
 
-/// Refuses early what could not be written at the end.
+/// Writes a picture as its name's ending says, whole or not at all.
+pub(crate) fn write_picture(picture: &image::RgbImage, path: &Path) -> Result<(), JobError> {
+    if !is_jpeg(path) {
+        return write_png(picture, path);
+    }
+    Ok(export::write_whole(path, |file| {
+        jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY)
+            .write_image(picture.as_raw(), picture.width(), picture.height(), ExtendedColorType::Rgb8)
+            .map_err(|e| export::ExportError::Encode { path: path.to_owned(), cause: e.to_string() })
+    })?)
+}
+
+fn has_ending(file: &Path, endings: &[&str]) -> bool {
+    file.extension().is_some_and(|end| endings.iter().any(|known| end.eq_ignore_ascii_case(known)))
+}
+
+fn is_jpeg(file: &Path) -> bool {
+    has_ending(file, &["jpg", "jpeg"])
+}
+
+/// Refuses early a picture that could not be written at the end.
 pub(crate) fn check_picture(file: &Path) -> Result<(), JobError> {
+    if !is_jpeg(file) && !has_ending(file, &["png"]) {
+        let what = "pictures are written as PNG or JPEG; give the name the ending .png or .jpg";
+        return Err(JobError::Refused(format!("{}: {what}", file.display())));
+    }
+    check_place(file)
+}
+
+/// Refuses early a place where nothing could be written at the end.
+pub(crate) fn check_place(file: &Path) -> Result<(), JobError> {
     let shown = file.display();
     let refuse = |what: String| Err(JobError::Refused(format!("{shown}: {what}")));
-    if !file.extension().is_some_and(|end| end.eq_ignore_ascii_case("png")) {
-        return refuse("pictures are written as PNG; give the name the ending .png".into());
-    }
     if file.is_dir() {
         return refuse("this is a folder".into());
     }

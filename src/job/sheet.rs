@@ -19,7 +19,7 @@ use crate::{
 use super::{
     Event, JobError,
     grow::run,
-    picture::{check_picture, write_png},
+    picture::{check_picture, write_picture},
 };
 
 /// Cells a side of a thumbnail's world, if nothing else is asked for.
@@ -67,7 +67,7 @@ pub fn sheet(
     let widest = (pictures.len() as f64 * 1.5).sqrt().ceil() as usize;
     let rows = pictures.len().div_ceil(widest.max(1));
     let sheet = relief::contact_sheet(&pictures, pictures.len().div_ceil(rows.max(1)).max(1));
-    write_png(&sheet, &request.file)?;
+    write_picture(&sheet, &request.file)?;
     Ok(request.file.clone())
 }
 

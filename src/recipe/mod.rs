@@ -24,7 +24,7 @@ pub use error::{Problem, RecipeError};
 pub(crate) use near::nearest;
 pub use overrides::Overrides;
 pub use params::{Parameter, json_schema, markdown, parameters, world_parameters};
-pub use plan::{Plan, Stage};
+pub use plan::{FilmTime, Plan, Stage};
 pub use presets::{Preset, all as presets, find as find_preset};
 pub use source::Source;
 pub use stages::{Setting, StageKind, all as stage_kinds, find as find_stage};

@@ -60,11 +60,28 @@ pub struct Stage {
     pub placement: Placement,
     /// An expert's number of steps.
     pub steps: Option<u64>,
+    /// How long it takes in a film; its share of the usual length where it does not say.
+    pub film: Option<FilmTime>,
     /// Its own parameters.
     pub params: Json,
 }
 
+/// How long a stage takes in a film.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FilmTime {
+    /// So many seconds.
+    Seconds(f64),
+    /// A second for so many years of the world.
+    YearsPerSecond(f64),
+}
+
 impl Stage {
+    /// Whether it takes time in the world: it has a duration among its parameters.
+    pub fn takes_time(&self) -> bool {
+        let defaults = self.kind.defaults.as_object();
+        defaults.is_some_and(|keys| keys.keys().any(|key| key.starts_with("duration_")))
+    }
+
     /// A fresh process.
     pub fn build(&self) -> Result<Box<dyn Process>, ProcessError> {
         self.kind.build(&self.params, Setting { placement: self.placement.clone(), steps: self.steps })
@@ -88,6 +105,15 @@ pub(crate) struct CommonKeys {
     /// An expert's number of steps; with it, another size may give another land.
     #[schemars(range(min = 1, max = 1000000))]
     pub steps: Option<u64>,
+    /// How long it takes in a film; 0 leaves it out.
+    #[schemars(range(min = 0.0, max = 3600.0), extend("x-unit" = "s", "x-effect" = "a slower film"))]
+    pub film_seconds: Option<f64>,
+    /// Years that pass in a second of a film; instead of film_seconds.
+    #[schemars(range(min = 0.001, max = 1e9), extend("x-unit" = "yr/s", "x-effect" = "a faster film"))]
+    pub film_yr_per_s: Option<f64>,
+    /// Seconds of the world that pass in a second of a film; instead of film_seconds.
+    #[schemars(range(min = 0.001, max = 1e9), extend("x-unit" = "s/s", "x-effect" = "a faster film"))]
+    pub film_s_per_s: Option<f64>,
     /// How its heights join what is there (default replace); base terrain only.
     #[serde(default)]
     pub blend: Blend,
@@ -96,6 +122,9 @@ pub(crate) struct CommonKeys {
 fn on() -> bool {
     true
 }
+
+/// A Julian year.
+const SECONDS_PER_YEAR: f64 = 365.25 * 86_400.0;
 
 /// How a stage can be named.
 #[derive(Clone, Debug, PartialEq)]
@@ -357,8 +386,26 @@ impl Reader<'_> {
             enabled: common.enabled,
             placement: Placement { blend: common.blend, mask },
             steps: common.steps,
+            film: self.film(&common, table)?,
             params,
         })
+    }
+
+    fn film(&self, common: &CommonKeys, table: &Table) -> Result<Option<FilmTime>, RecipeError> {
+        let times = [
+            ("film_seconds", common.film_seconds.map(FilmTime::Seconds)),
+            ("film_yr_per_s", common.film_yr_per_s.map(FilmTime::YearsPerSecond)),
+            ("film_s_per_s", common.film_s_per_s.map(|s| FilmTime::YearsPerSecond(s / SECONDS_PER_YEAR))),
+        ];
+        let mut given = times.into_iter().filter_map(|(key, time)| time.map(|time| (key, time)));
+        match (given.next(), given.next()) {
+            (Some((first, _)), Some((second, _))) => {
+                let place = table.get(second).map_or(Place::File, |node| node.place.clone());
+                let what = format!("'{second}' and '{first}' both say how long the stage takes in a film; keep one");
+                Err(self.error(&place, Problem::Unfit(what)))
+            }
+            (time, _) => Ok(time.map(|(_, time)| time)),
+        }
     }
 
     fn mask(&self, text: &str, table: &Table) -> Result<Mask, RecipeError> {
@@ -451,7 +498,8 @@ pub(crate) fn with_common(kind: &StageKind) -> Json {
 }
 
 /// The keys of every stage; no stage has a parameter of such a name.
-pub(crate) const COMMON: [&str; 6] = ["kind", "id", "enabled", "mask", "steps", "blend"];
+pub(crate) const COMMON: [&str; 9] =
+    ["kind", "id", "enabled", "mask", "steps", "film_seconds", "film_yr_per_s", "film_s_per_s", "blend"];
 
 fn split(checked: Json) -> (Json, Json) {
     let Json::Object(all) = checked else { return (Json::Null, Json::Null) };

@@ -16,18 +16,22 @@ impl Coast {
     /// The coast of `z` at `sea`.
     pub fn new(z: &Field<f32>, sea: f32) -> Self {
         let line_px = Field::from_fn(z.grid, |x, y| distance(z, sea, x, y));
-        let land = Field::from_fn(z.grid, |x, y| {
-            let beyond = line_px.at(x, y).min(1.0);
-            (if z.at(x, y) > sea { 0.5 + beyond } else { 0.5 - beyond }).clamp(0.0, 1.0)
-        });
+        let land = Field::from_fn(z.grid, |x, y| land_share(z.at(x, y) > sea, line_px.at(x, y)));
         let offshore = nearest_feature(z.grid, |i| z.data[i] > sea).distance_m;
         let per_m = (1.0 / z.grid.cell_m) as f32;
         Self { land, line_px, offshore_px: offshore.map(|d| d * per_m) }
     }
 }
 
-/// Distance from a pixel's centre to the contour in the 4 x 4 squares around it, pixels.
-fn distance(z: &Field<f32>, sea: f32, x: usize, y: usize) -> f32 {
+/// Share of a pixel that is land, by the side its centre lies on and the distance to the coast.
+#[inline(always)]
+pub fn land_share(above: bool, line_px: f32) -> f32 {
+    let beyond = line_px.min(1.0);
+    (if above { 0.5 + beyond } else { 0.5 - beyond }).clamp(0.0, 1.0)
+}
+
+/// Distance from a pixel's centre to the contour in the 4 x 4 squares around it, pixels; infinite where there is none.
+pub fn distance(z: &Field<f32>, sea: f32, x: usize, y: usize) -> f32 {
     let (w, h) = (z.grid.width, z.grid.height);
     let (left, right) = (x.saturating_sub(2), (x + 2).min(w - 1));
     let (top, bottom) = (y.saturating_sub(2), (y + 2).min(h - 1));

@@ -29,7 +29,7 @@ impl Frame {
 
     /// Size of marks and text, relative to a picture of 1024 pixels.
     pub fn unit(&self) -> f32 {
-        (self.grid.width.max(self.grid.height) as f32 / 1024.0).clamp(0.7, 4.0)
+        unit_of(&self.grid)
     }
 
     /// The size of a cell, in words.
@@ -65,6 +65,11 @@ impl Frame {
         };
         Field::from_fn(self.grid, |x, y| field.at(pick(x, self.from.width), pick(y, self.from.height)))
     }
+}
+
+/// Size of marks and text on a picture of these pixels, relative to one of 1024.
+pub fn unit_of(pixels: &Grid) -> f32 {
+    (pixels.width.max(pixels.height) as f32 / 1024.0).clamp(0.7, 4.0)
 }
 
 #[cfg(test)]

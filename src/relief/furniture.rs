@@ -99,7 +99,7 @@ impl Legend {
     }
 
     /// Draws into a box; returns the height it took.
-    fn draw(&self, canvas: &mut Canvas, [x, y]: [f32; 2], width: f32, u: f32) {
+    pub fn draw(&self, canvas: &mut Canvas, [x, y]: [f32; 2], width: f32, u: f32) {
         let size = 13.0 * u;
         text::write(canvas, &self.title, [x, y + 11.0 * u], size, Align::Left, INK);
         match &self.body {

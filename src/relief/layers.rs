@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{
-    Options,
+    Options, View,
     coast::Coast,
     frame::Frame,
     furniture::{Legend, Ticks},
@@ -24,7 +24,7 @@ const DIVERGING: [u32; 7] = [0x233f8f, 0x4f83c4, 0xa9c9e6, 0xf5f3ee, 0xf0b795, 0
 const AGE: [u32; 7] = [0x9c1430, 0xdf5a3c, 0xf6ad55, 0xf3e6a0, 0x93ccac, 0x4191b8, 0x3a4796];
 const SLOPE: [u32; 6] = [0xf4f2ec, 0xdbd5c8, 0xe5bd80, 0xdb7a4c, 0xa9272c, 0x590e26];
 /// How strongly a layer's colours are shaded.
-const SHADING: f32 = 0.28;
+pub const SHADING: f32 = 0.28;
 /// More identities than these get no legend of their own.
 const MOST_SWATCHES: usize = 24;
 
@@ -56,18 +56,24 @@ fn title(spec: &Spec) -> String {
 }
 
 fn continuous(frame: &Frame, field: &Field<f32>, spec: &Spec) -> (Vec<Rgb>, Legend) {
-    let codes: &[u32] = match spec.palette {
+    let range = span(field, spec);
+    let ramp = Ramp::even(codes(spec.palette), range);
+    let values = frame.continuous(field);
+    let legend = ramp_legend(spec, &ramp, range);
+    (values.data.iter().map(|&v| ramp.at(v)).collect(), legend)
+}
+
+fn codes(palette: Palette) -> &'static [u32] {
+    match palette {
         Palette::Diverging => &DIVERGING,
         Palette::Age => &AGE,
         Palette::Slope => &SLOPE,
         _ => &SEQUENTIAL,
-    };
-    let range = span(field, spec);
-    let ramp = Ramp::even(codes, range);
-    let values = frame.continuous(field);
-    let legend =
-        Legend::bar(title(spec), |t| ramp.at((range[0] + (range[1] - range[0]) * t) as f32), Ticks::over(range));
-    (values.data.iter().map(|&v| ramp.at(v)).collect(), legend)
+    }
+}
+
+fn ramp_legend(spec: &Spec, ramp: &Ramp, range: [f64; 2]) -> Legend {
+    Legend::bar(title(spec), |t| ramp.at((range[0] + (range[1] - range[0]) * t) as f32), Ticks::over(range))
 }
 
 /// The catalogue's range, so that pictures compare; another one where the values leave it or fill less than a fifth.
@@ -118,10 +124,67 @@ fn identities(frame: &Frame, field: &Field<f32>, spec: &Spec) -> (Vec<Rgb>, Lege
 }
 
 fn classes(frame: &Frame, field: &Field<f32>, spec: &Spec, names: &[&str]) -> (Vec<Rgb>, Legend) {
-    let colour = |i: usize| BOUNDARIES.get(i).map_or_else(|| identity(i as f32), |&code| hex(code));
     let values = frame.nearest(field);
-    let swatches = names.iter().enumerate().map(|(i, &name)| (colour(i), name.to_owned())).collect();
-    (values.data.iter().map(|&v| colour(v as usize)).collect(), Legend::swatches(title(spec), swatches))
+    (values.data.iter().map(|&v| class(v as usize)).collect(), class_legend(spec, names))
+}
+
+fn class(i: usize) -> Rgb {
+    BOUNDARIES.get(i).map_or_else(|| identity(i as f32), |&code| hex(code))
+}
+
+fn class_legend(spec: &Spec, names: &[&str]) -> Legend {
+    let swatches = names.iter().enumerate().map(|(i, &name)| (class(i), name.to_owned())).collect();
+    Legend::swatches(title(spec), swatches)
+}
+
+/// A layer's colours on a scale that does not depend on any world, for films.
+pub enum Colours {
+    /// A quantity, over the catalogue's range.
+    Ramp(Ramp),
+    /// Identities.
+    Ids,
+    /// Named classes.
+    Classes,
+}
+
+impl Colours {
+    /// Those of a layer; `None` where heights' own colours serve.
+    pub fn fixed(layer: Layer) -> Option<Self> {
+        let spec = layer.spec();
+        match spec.kind {
+            Kind::Continuous if spec.palette == Palette::Elevation => None,
+            Kind::Continuous => Some(Colours::Ramp(Ramp::even(codes(spec.palette), spec.range))),
+            Kind::Id => Some(Colours::Ids),
+            Kind::Class(_) => Some(Colours::Classes),
+        }
+    }
+
+    /// Whether values are names, which have no between.
+    pub fn named(&self) -> bool {
+        !matches!(self, Colours::Ramp(_))
+    }
+
+    /// The colour of a value.
+    pub fn at(&self, value: f32) -> Rgb {
+        match self {
+            Colours::Ramp(ramp) => ramp.at(value),
+            Colours::Ids => identity(value),
+            Colours::Classes => class(value as usize),
+        }
+    }
+}
+
+/// What the colours of a film mean.
+pub fn fixed_legend(view: &View, scene: &Scene) -> Legend {
+    let View::Layer(layer) = view else { return Legend::heights(scene) };
+    let spec = layer.spec();
+    match (Colours::fixed(*layer), spec.kind) {
+        (None, _) => Legend::heights(scene).titled(title(&spec)),
+        (Some(Colours::Ramp(ramp)), _) => ramp_legend(&spec, &ramp, spec.range),
+        (Some(_), Kind::Class(names)) => class_legend(&spec, names),
+        // Which identities there will be, nobody knows.
+        _ => Legend::swatches(title(&spec), Vec::new()),
+    }
 }
 
 fn over_ground(

@@ -4,12 +4,13 @@
 //! A picture is made in passes over its pixels, rows in parallel: heights are brought to the picture's raster
 //! (`frame`), lit (`shade`), coloured by height (`tint`, `palette`), the coast is drawn (`coast`), plates are laid over
 //! it (`overlay`), and what stands around the map is added (`furniture`, `text`). Same world, same bits, for any
-//! number of threads.
+//! number of threads. A film draws the same map at its own size and one scale of colours, quicker ([`film`]).
 //!
 //! This room reads worlds and never changes them; it knows no process and no GPU.
 
 mod blur;
 mod coast;
+pub mod film;
 mod frame;
 mod furniture;
 mod layers;

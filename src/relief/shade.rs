@@ -23,7 +23,7 @@ const LEVEL: f32 = 0.04;
 /// Flat worlds stay flat: no more than this.
 const MOST: f64 = 90.0;
 /// Blur of the three copies, in thousandths of the picture's side, and their share in the slope.
-const SCALES: [(f64, f64); 3] = [(0.0, 0.70), (2.5, 0.50), (10.0, 0.60)];
+pub const SCALES: [(f64, f64); 3] = [(0.0, 0.70), (2.5, 0.50), (10.0, 0.60)];
 /// Least blur of each, pixels: single cells are not terrain.
 const LEAST_PX: [f64; 3] = [0.55, 1.4, 3.0];
 
@@ -36,11 +36,7 @@ pub fn shade(
 ) -> Field<f32> {
     let copies = [0, 1, 2].map(|i| blur(z, sigma_px(z, i)));
     let factor = exaggeration.unwrap_or_else(|| typical_exaggeration(&copies[0], counts)) as f32;
-    let lights = LIGHTS.map(|(azimuth, altitude, weight)| {
-        let (a, h) = (f64::to_radians(azimuth), f64::to_radians(altitude));
-        [libm::sin(a) * libm::cos(h), -libm::cos(a) * libm::cos(h), libm::sin(h)].map(|v| (v * weight) as f32)
-    });
-    let flat: f32 = lights.iter().map(|l| l[2]).sum();
+    let lamps = Lamps::new();
     // Height over the surroundings, in units of a slope of one across the blur.
     let per_m = factor / (sigma_px(z, 2) * frame.grid.cell_m) as f32;
     Field::from_fn(z.grid, |x, y| {
@@ -49,16 +45,38 @@ pub fn shade(
             let [gx, gy] = slope(copy, x, y);
             g = [g[0] + gx * share as f32, g[1] + gy * share as f32];
         }
-        let [gx, gy] = g.map(|v| v * factor);
+        lamps.tone(g.map(|v| v * factor), (z.at(x, y) - copies[2].at(x, y)) * per_m)
+    })
+}
+
+/// The lights, ready to shine.
+pub struct Lamps {
+    lights: [[f32; 3]; LIGHTS.len()],
+    flat: f32,
+}
+
+impl Lamps {
+    /// Directions times weights.
+    pub fn new() -> Self {
+        let lights = LIGHTS.map(|(azimuth, altitude, weight)| {
+            let (a, h) = (f64::to_radians(azimuth), f64::to_radians(altitude));
+            [libm::sin(a) * libm::cos(h), -libm::cos(a) * libm::cos(h), libm::sin(h)].map(|v| (v * weight) as f32)
+        });
+        Self { lights, flat: lights.iter().map(|l| l[2]).sum() }
+    }
+
+    /// How bright a place is, by its exaggerated slope and its height over the surroundings.
+    #[inline(always)]
+    pub fn tone(&self, [gx, gy]: [f32; 2], over: f32) -> f32 {
+        let flat = self.flat;
         let bend = bend(gx * gx + gy * gy);
         let (gx, gy) = (gx * bend, gy * bend);
         let norm = 1.0 / (1.0 + gx * gx + gy * gy).sqrt();
-        let lit: f32 = lights.iter().map(|l| ((l[2] - gx * l[0] - gy * l[1]) * norm).max(0.0)).sum();
+        let lit: f32 = self.lights.iter().map(|l| ((l[2] - gx * l[0] - gy * l[1]) * norm).max(0.0)).sum();
         let tone = if lit > flat { (lit - flat) / (1.0 - flat) } else { (lit - flat) / flat };
-        let over = (z.at(x, y) - copies[2].at(x, y)) * per_m;
         let sky = 0.16 * over / (1.0 + over * over).sqrt();
         (tone + sky).clamp(-1.0, 1.0)
-    })
+    }
 }
 
 /// The exaggeration that `shade` would choose.
@@ -67,12 +85,13 @@ pub fn exaggeration(z: &Field<f32>, counts: impl Fn(f32) -> bool + Sync) -> f64 
 }
 
 /// Blur of one of the copies.
-fn sigma_px(z: &Field<f32>, copy: usize) -> f64 {
+pub fn sigma_px(z: &Field<f32>, copy: usize) -> f64 {
     let side = z.grid.width.max(z.grid.height) as f64;
     (SCALES[copy].0 * side / 1000.0).max(LEAST_PX[copy])
 }
 
 /// What a slope is multiplied with before it is lit, by its square.
+#[inline(always)]
 fn bend(squared: f32) -> f32 {
     let raised = 1.0 / (squared + LEVEL * LEVEL).sqrt().sqrt().sqrt();
     let steep = squared * raised * raised / (STEEP * STEEP);
@@ -87,7 +106,7 @@ fn slope(z: &Field<f32>, x: usize, y: usize) -> [f32; 2] {
 }
 
 /// The factor that gives the pixels that count a typical slope.
-fn typical_exaggeration(z: &Field<f32>, counts: impl Fn(f32) -> bool + Sync) -> f64 {
+pub fn typical_exaggeration(z: &Field<f32>, counts: impl Fn(f32) -> bool + Sync) -> f64 {
     let counts = &counts;
     let rows = z.grid.height;
     let land = |y: usize| (0..z.grid.width).filter(move |&x| counts(z.at(x, y)));

@@ -60,6 +60,11 @@ impl Scene {
     /// The tints for a world of these heights.
     pub fn new(height: &Field<f32>, sea_m: f64) -> Self {
         let (low, high) = height.range().map_or((0.0, 0.0), |(a, b)| (a as f64, b as f64));
+        Self::over([low, high], sea_m)
+    }
+
+    /// The tints for heights between these two.
+    pub fn over([low, high]: [f64; 2], sea_m: f64) -> Self {
         let (bottom, top) = (low.max(sea_m), high.max(sea_m));
         let absolute = high - low > ABSOLUTE_M;
         // Land far above the sea starts at its own foot.
@@ -94,25 +99,59 @@ pub fn relief(frame: &Frame, heights: &Field<f32>, scene: &Scene, options: &Opti
     let has_land = scene.range_m[1] > scene.sea_m;
     let tone = shade(frame, heights, |h| h > sea || !has_land, options.exaggeration);
     let coast = Coast::new(heights, sea);
-    let unit = frame.unit();
+    let (unit, brush) = (frame.unit(), Brush::new(frame.unit()));
     let mut pixels = vec![[0.0; 3]; frame.grid.cells()];
-    let (ink, glow) = (hex(0x24455a), hex(0xbfe2e8));
     crate::grid::map_cells(&mut pixels, frame.grid.width, |x, y| {
-        let (h, tone, land) = (heights.at(x, y), tone.at(x, y), coast.land.at(x, y));
-        let wet = || {
-            let halo = 0.40 * libm::expf(-coast.offshore_px.at(x, y) / (4.5 * unit));
-            mix(lit_floor(scene.sea(h.min(sea)), tone * 0.5), glow, halo)
-        };
-        let dry = || lit(scene.land(h.max(sea)), tone);
+        let halo = || Brush::halo(coast.offshore_px.at(x, y), unit);
+        let place = Place { height_m: heights.at(x, y), tone: tone.at(x, y), land: coast.land.at(x, y) };
+        brush.pixel(scene, place, coast.line_px.at(x, y), halo)
+    });
+    pixels
+}
+
+/// What the map shows at a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Height, m.
+    pub height_m: f32,
+    /// How bright it is, -1 to 1.
+    pub tone: f32,
+    /// Share of it that is land.
+    pub land: f32,
+}
+
+/// Colours a map's pixels.
+pub struct Brush {
+    ink: Rgb,
+    glow: Rgb,
+    half_line_px: f32,
+}
+
+impl Brush {
+    /// For marks of a size.
+    pub fn new(unit: f32) -> Self {
+        Self { ink: hex(0x24455a), glow: hex(0xbfe2e8), half_line_px: 0.5 + 0.45 * unit }
+    }
+
+    /// How strongly the sea glows at a distance from land.
+    pub fn halo(offshore_px: f32, unit: f32) -> f32 {
+        0.40 * libm::expf(-offshore_px / (4.5 * unit))
+    }
+
+    /// A pixel in linear light.
+    #[inline(always)]
+    pub fn pixel(&self, scene: &Scene, place: Place, line_px: f32, halo: impl Fn() -> f32) -> Rgb {
+        let Place { height_m, tone, land } = place;
+        let sea = scene.sea_m as f32;
+        let wet = || mix(lit_floor(scene.sea(height_m.min(sea)), tone * 0.5), self.glow, halo());
+        let dry = || lit(scene.land(height_m.max(sea)), tone);
         let ground = match land {
             0.0 => wet(),
             1.0 => dry(),
             share => mix(wet(), dry(), share),
         };
-        let line = (0.5 + 0.45 * unit - coast.line_px.at(x, y)).clamp(0.0, 1.0);
-        mix(ground, ink, 0.62 * line)
-    });
-    pixels
+        mix(ground, self.ink, 0.62 * (self.half_line_px - line_px).clamp(0.0, 1.0))
+    }
 }
 
 /// A colour under light: shadows cool, light warm, as on painted maps.

@@ -1,0 +1,131 @@
+//! Films of a run, and of a timeline that was kept.
+//!
+//! A [`Film`] takes worlds in time order and gives pictures at even distances of its own time. A process shows its world
+//! only between two steps, which are often fewer than the pictures: heights and other quantities in between are in
+//! proportion to time (`relief::film`). The first stage rises from flat ground, and the last picture is the finished
+//! world.
+//!
+//! It draws and encodes nothing itself: that is for `relief` and `export::video`.
+
+mod clock;
+mod heights;
+mod pace;
+mod request;
+mod sink;
+
+pub(crate) use heights::HeightFrames;
+pub use heights::{FramesRequest, HEIGHTS_RANGE};
+pub use request::{FilmPlan, FilmRequest};
+pub(crate) use sink::FilmSink;
+
+use std::path::PathBuf;
+
+use super::JobError;
+use crate::{
+    export::video::Encoder,
+    grid::Grid,
+    relief::film::{Animation, Shot, Words},
+    timeline::Moment,
+    world::World,
+};
+use pace::Clip;
+
+/// How long the last picture stands, s.
+const HOLD_S: f64 = 1.0;
+/// Steps are counted in floating point.
+const SLACK: f64 = 1e-9;
+
+/// A film being made. Dropped before [`Film::finish`], it leaves nothing behind.
+pub struct Film {
+    animation: Animation,
+    encoder: Encoder,
+    clips: Vec<Clip>,
+    clock: bool,
+    /// The stage being shown, and what its clip counts from.
+    stage: usize,
+    began_yr: f64,
+    /// Where in the clip the last shot stands, and the next picture, in pictures.
+    at: f64,
+    next: f64,
+    shot: Option<Shot>,
+    /// Whether the last picture shows the last shot itself.
+    shown: bool,
+}
+
+impl Film {
+    /// Begins a film of worlds over `grid`; says before anything runs what cannot be done.
+    pub fn new(plan: &FilmPlan, grid: Grid) -> Result<Self, JobError> {
+        let animation = Animation::new(grid, &plan.animation);
+        let encoder = Encoder::open(&plan.file, &plan.encoding)?;
+        Ok(Self {
+            animation,
+            encoder,
+            clips: plan.clips.clone(),
+            clock: plan.clock,
+            stage: 0,
+            began_yr: 0.0,
+            at: 0.0,
+            next: 1.0,
+            shot: None,
+            shown: false,
+        })
+    }
+
+    /// Whether the film needs the world at this moment: where a picture is due, and where a stage ends.
+    pub fn wants(&self, moment: &Moment) -> bool {
+        let (at, next) =
+            if moment.stage == self.stage { (self.place(moment, self.began_yr), self.next) } else { (0.0, 0.0) };
+        moment.stage_over() || at + SLACK >= next
+    }
+
+    /// Where a moment stands in its clip, in pictures.
+    fn place(&self, moment: &Moment, began_yr: f64) -> f64 {
+        self.clips.get(moment.stage).map_or(0.0, |clip| clip.place(moment.done, moment.time_yr - began_yr))
+    }
+
+    /// Takes the world of a moment, and draws the pictures since the last one.
+    pub fn frame(&mut self, world: &World, moment: &Moment) -> Result<(), JobError> {
+        if moment.stage != self.stage {
+            self.stage = moment.stage;
+            self.began_yr = self.shot.as_ref().map_or(0.0, Shot::time_yr);
+            (self.at, self.next) = (0.0, 1.0);
+        }
+        let to = self.animation.shot(world)?;
+        let from = self.shot.take().unwrap_or_else(|| to.before());
+        let at = self.place(moment, self.began_yr);
+        self.shown = false;
+        while self.next <= at + SLACK {
+            let share = ((self.next - self.at) / (at - self.at)).clamp(0.0, 1.0) as f32;
+            self.draw([&from, &to], share, at - self.at)?;
+            self.shown = share >= 1.0;
+            self.next += 1.0;
+        }
+        self.at = at;
+        self.shot = Some(to);
+        Ok(())
+    }
+
+    fn draw(&mut self, [from, to]: [&Shot; 2], share: f32, pictures: f64) -> Result<(), JobError> {
+        let clock = if self.clock {
+            let passed_yr = to.time_yr() - from.time_yr();
+            let time_yr = from.time_yr() + passed_yr * f64::from(share);
+            clock::text(time_yr, time_yr - self.began_yr, passed_yr / pictures.max(1.0))
+        } else {
+            String::new()
+        };
+        let caption = self.clips.get(self.stage).map_or("", |clip| clip.caption.as_str());
+        let mut picture = self.encoder.blank();
+        self.animation.draw([from, to], share, Words { caption, clock: &clock }, &mut picture);
+        Ok(self.encoder.push(picture)?)
+    }
+
+    /// Ends the film with the last world and puts it in its place.
+    pub fn finish(mut self) -> Result<PathBuf, JobError> {
+        if let Some(last) = self.shot.take()
+            && !self.shown
+        {
+            self.draw([&last, &last], 1.0, 1.0)?;
+        }
+        Ok(self.encoder.finish()?)
+    }
+}

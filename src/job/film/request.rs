@@ -1,0 +1,152 @@
+//! What is asked of a film, and whether it can be done.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
+};
+
+use super::{
+    HOLD_S,
+    pace::{Clip, clips},
+};
+use crate::{
+    export::video::{Encoder, Format, Rate, Settings},
+    job::{JobError, grow::run, picture},
+    recipe::{Plan, Size},
+    relief::{View, film},
+    world::Layer,
+};
+
+/// Longer side of the trial run that finds how high a world will be.
+const TRIAL_SIDE: usize = 128;
+/// Room above and below what the trial finds, as a share of its range.
+const MARGIN: f64 = 0.25;
+/// Where plates move, heights are those of the Earth, m over the sea.
+const EARTH_M: [f64; 2] = [-11_000.0, 9_000.0];
+
+/// A film as it is asked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FilmRequest {
+    /// The film; one in the world's folder where there is no name.
+    pub file: Option<PathBuf>,
+    /// Frames a second; the format's usual ones where absent.
+    pub rate: Option<Rate>,
+    /// Width and height, pixels; the format's usual ones where absent.
+    pub size: Option<[usize; 2]>,
+    /// `relief`, or a layer's name.
+    pub view: String,
+    /// Whether the time is shown.
+    pub clock: bool,
+    /// What ffmpeg is told besides.
+    pub ffmpeg_args: Vec<String>,
+}
+
+/// A film that can be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmPlan {
+    /// Where it is put; a bare name belongs to the world's folder.
+    pub file: PathBuf,
+    /// Whether it belongs to the world's folder.
+    pub in_folder: bool,
+    pub(super) encoding: Settings,
+    pub(super) animation: film::Options,
+    pub(super) clips: Vec<Clip>,
+    pub(super) clock: bool,
+}
+
+impl FilmPlan {
+    /// Checks a request against the recipe, up to the stage of place `until`. Finds how high the land will be, for which
+    /// a small trial may run.
+    pub fn new(
+        request: &FilmRequest,
+        plan: &Plan,
+        until: Option<usize>,
+        cancel: &AtomicBool,
+    ) -> Result<Self, JobError> {
+        let file = match &request.file {
+            Some(file) => file.clone(),
+            // Smaller, but there.
+            None if !Encoder::has_ffmpeg() => PathBuf::from("film.png"),
+            None => PathBuf::from("film.mp4"),
+        };
+        let format = Format::of(&file)?;
+        let size = format.fit(request.size.unwrap_or(format.usual_size()));
+        let rate = request.rate.unwrap_or(format.usual_rate());
+        format.check(rate, request.size.unwrap_or(size))?;
+        if request.file.is_some() {
+            check_place(&file, format)?;
+        }
+        let view = picture::view(&request.view)?;
+        if let View::Layer(layer) = view {
+            check_layer(plan, until, layer)?;
+        }
+        let range_m = range_over_sea(plan, until, cancel)?;
+        let ffmpeg_args = request.ffmpeg_args.clone();
+        Ok(Self {
+            in_folder: request.file.is_none(),
+            encoding: Settings { format, size, rate, hold_s: HOLD_S, ffmpeg_args },
+            animation: film::Options { size, view, range_m, title: Some(plan.title.clone()) },
+            clips: clips(plan, until, rate.per_second()),
+            clock: request.clock,
+            file,
+        })
+    }
+
+    /// The same film in a folder.
+    pub fn within(mut self, folder: &Path) -> Self {
+        if self.in_folder {
+            self.file = folder.join(self.file);
+        }
+        self
+    }
+}
+
+/// Refuses early what could not be written at the end.
+fn check_place(file: &Path, format: Format) -> Result<(), JobError> {
+    if !format.numbered() {
+        picture::check_place(file)?;
+    }
+    if format.needs_ffmpeg() && !Encoder::has_ffmpeg() {
+        return Err(JobError::Refused(format!(
+            "{}: this film needs ffmpeg, which is not installed (Debian, Ubuntu: apt install ffmpeg; macOS: brew install \
+             ffmpeg; Windows: winget install ffmpeg); a film.png needs none",
+            file.display()
+        )));
+    }
+    Ok(())
+}
+
+/// Refuses a layer that no stage makes.
+fn check_layer(plan: &Plan, until: Option<usize>, layer: Layer) -> Result<(), JobError> {
+    let mut made: Vec<Layer> = Vec::new();
+    for (_, stage) in plan.running().filter(|(i, _)| until.is_none_or(|end| *i <= end)) {
+        let process = stage.build().map_err(|e| JobError::Refused(e.to_string()))?;
+        made.extend(process.writes());
+    }
+    if layer.derived() || made.contains(&layer) {
+        return Ok(());
+    }
+    let names: Vec<_> = Layer::ALL.iter().filter(|l| l.derived() || made.contains(l)).map(|l| l.name()).collect();
+    let what = format!(
+        "--view {}: no stage of this recipe makes that layer (it has: relief, {})",
+        layer.name(),
+        names.join(", ")
+    );
+    Err(JobError::Refused(what))
+}
+
+/// Heights to be expected, m over the sea: Earth's where plates move, else those of a small trial and some more.
+pub fn range_over_sea(plan: &Plan, until: Option<usize>, cancel: &AtomicBool) -> Result<[f64; 2], JobError> {
+    let running = || plan.running().filter(|(i, _)| until.is_none_or(|end| *i <= end));
+    if running().any(|(_, stage)| stage.takes_time()) {
+        return Ok(EARTH_M);
+    }
+    let mut small = plan.clone();
+    let [width, height] = plan.world.size.cells();
+    let shrink = |side: usize| (side * TRIAL_SIDE / width.max(height)).clamp(16, side);
+    small.world.size = Size::Sides([shrink(width), shrink(height)]);
+    let (world, _) = run(&small, until, cancel, &mut |_| ())?;
+    let (low, high) = world.height().range().map_or((0.0, 1.0), |(low, high)| (f64::from(low), f64::from(high)));
+    let margin = MARGIN * (high - low).max(1.0);
+    Ok([low - margin - world.sea_level_m, high + margin - world.sea_level_m])
+}

@@ -1,0 +1,150 @@
+//! The passes over a picture's pixels.
+
+use rayon::prelude::*;
+
+use super::{
+    super::{
+        coast,
+        layers::SHADING,
+        palette::{Rgb, hex, mix},
+        tint::{Place, lit},
+    },
+    Animation, Shot,
+};
+use crate::grid::for_each_row;
+
+/// Values between two shots, row by row.
+struct Between<'a> {
+    from: &'a [f32],
+    to: &'a [f32],
+    share: f32,
+}
+
+impl Between<'_> {
+    fn row(&self, y: usize, out: &mut [f32]) {
+        let width = out.len();
+        let (from, to) = (&self.from[y * width..][..width], &self.to[y * width..][..width]);
+        if self.share >= 1.0 {
+            return out.copy_from_slice(to);
+        }
+        for ((out, a), b) in out.iter_mut().zip(from).zip(to) {
+            *out = a + (b - a) * self.share;
+        }
+    }
+}
+
+/// Room for a row's values.
+struct Room {
+    form: [Vec<f32>; 3],
+    around: Vec<f32>,
+    tone: Vec<f32>,
+}
+
+impl Animation {
+    /// Draws the map into the picture's upper left corner.
+    pub(super) fn paint(&mut self, [from, to]: [&Shot; 2], share: f32, picture: &mut [u8]) {
+        let map = self.map;
+        let heights = Between { from: &from.height.data, to: &to.height.data, share };
+        for_each_row(&mut self.heights.data, map.width, |y, row| heights.row(y, row));
+        let proportion = |a: f32, b: f32| if share >= 1.0 { b } else { a + (b - a) * share };
+        let sea_m = proportion(from.sea_m, to.sea_m);
+        self.shore.find(&self.heights, sea_m);
+        let light = Light {
+            form: Between { from: &from.form, to: &to.form, share },
+            around: Between { from: &from.around, to: &to.around, share },
+            factor: proportion(from.exaggeration, to.exaggeration),
+        };
+        // Names change half way; what has an order goes in proportion.
+        let nearest = if share < 0.5 { from } else { to };
+        let values = match (&from.values, &to.values, &nearest.values) {
+            (Some(a), Some(b), Some(near)) => {
+                let named = self.colours.as_ref().is_some_and(|colours| colours.named());
+                Some(if named {
+                    Between { from: near, to: near, share: 1.0 }
+                } else {
+                    Between { from: a, to: b, share }
+                })
+            }
+            _ => None,
+        };
+        let this = &*self;
+        let room = || {
+            let row = || vec![0.0; map.width];
+            Room { form: [row(), row(), row()], around: row(), tone: row() }
+        };
+        let rows = picture.par_chunks_exact_mut(this.size[0] * 3).take(map.height).enumerate();
+        rows.for_each_init(room, |room, (y, out)| {
+            let out = &mut out[..map.width * 3];
+            this.light(&light, y, room);
+            match &values {
+                Some(values) => this.layer_row(values, sea_m, y, room, out),
+                None => this.relief_row(sea_m, y, &room.tone, out),
+            }
+        });
+    }
+
+    /// How bright each pixel of a row is, as `shade` finds it.
+    fn light(&self, light: &Light, y: usize, room: &mut Room) {
+        let grid = &self.map;
+        let last = grid.width - 1;
+        for (row, j) in room.form.iter_mut().zip([grid.row(y, -1), y, grid.row(y, 1)]) {
+            light.form.row(j, row);
+        }
+        light.around.row(y, &mut room.around);
+        let per = (0.5 / grid.cell_m) as f32 * light.factor;
+        let over = light.factor / (super::super::shade::sigma_px(&self.heights, 2) * grid.cell_m) as f32;
+        let [north, here, south] = &room.form;
+        let z = self.heights.row(y);
+        let around = &room.around;
+        let tone = &mut room.tone;
+        let at = |x: usize, west: usize, east: usize| {
+            let slope = [(here[east] - here[west]) * per, (south[x] - north[x]) * per];
+            self.lamps.tone(slope, (z[x] - around[x]) * over)
+        };
+        // The rim has its own neighbours; the rest is one plain loop.
+        for x in 1..last {
+            tone[x] = at(x, x - 1, x + 1);
+        }
+        for x in [0, last] {
+            tone[x] = at(x, grid.column(x, -1), grid.column(x, 1));
+        }
+    }
+
+    fn relief_row(&self, sea_m: f32, y: usize, tone: &[f32], out: &mut [u8]) {
+        let brush = &self.brush;
+        let begin = y * self.map.width;
+        for (x, (pixel, &height_m)) in out.chunks_exact_mut(3).zip(self.heights.row(y)).enumerate() {
+            let line_px = self.shore.line_px[begin + x];
+            // The scene is over a sea at zero.
+            let height_m = height_m - sea_m;
+            let place = Place { height_m, tone: tone[x], land: coast::land_share(height_m > 0.0, line_px) };
+            let colour = brush.pixel(&self.scene, place, line_px, || self.shore.glow(begin + x));
+            pixel.copy_from_slice(&self.encoder.bytes(colour));
+        }
+    }
+
+    fn layer_row(&self, values: &Between, sea_m: f32, y: usize, room: &mut Room, out: &mut [u8]) {
+        let own = &mut room.around;
+        values.row(y, own);
+        let (ink, half) = (hex(0x202830), 0.5 + 0.35 * self.unit);
+        let begin = y * self.map.width;
+        let colour = |value: f32| -> Rgb {
+            match &self.colours {
+                Some(colours) => colours.at(value),
+                None => self.scene.at(value - sea_m),
+            }
+        };
+        for (x, (pixel, &height_m)) in out.chunks_exact_mut(3).zip(self.heights.row(y)).enumerate() {
+            let depth = if height_m > sea_m { SHADING } else { SHADING * 0.5 };
+            let line = (half - self.shore.line_px[begin + x]).clamp(0.0, 1.0);
+            let lit = mix(lit(colour(own[x]), room.tone[x] * depth), ink, 0.55 * line);
+            pixel.copy_from_slice(&self.encoder.bytes(lit));
+        }
+    }
+}
+
+struct Light<'a> {
+    form: Between<'a>,
+    around: Between<'a>,
+    factor: f32,
+}
