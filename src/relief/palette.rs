@@ -10,6 +10,7 @@ pub fn hex(code: u32) -> Rgb {
 }
 
 /// `a` to `b`.
+#[inline]
 pub fn mix(a: Rgb, b: Rgb, t: f32) -> Rgb {
     [0, 1, 2].map(|i| a[i] + (b[i] - a[i]) * t)
 }
@@ -38,6 +39,7 @@ impl Encoder {
     }
 
     /// One colour.
+    #[inline]
     pub fn bytes(&self, rgb: Rgb) -> [u8; 3] {
         rgb.map(|v| self.table[(v.clamp(0.0, 1.0) * (Self::SIZE - 1) as f32 + 0.5) as usize])
     }
@@ -109,6 +111,7 @@ impl Ramp {
     }
 
     /// The colour of a value.
+    #[inline]
     pub fn at(&self, value: f32) -> Rgb {
         let at = ((value - self.low) * self.per_value).clamp(0.0, (Self::SIZE - 1) as f32);
         let i = (at as usize).min(Self::SIZE - 2);

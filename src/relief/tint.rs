@@ -78,11 +78,13 @@ impl Scene {
     }
 
     /// The colour of dry land at a height.
+    #[inline]
     pub fn land(&self, height_m: f32) -> Rgb {
         self.land.at(height_m)
     }
 
     /// The colour of sea over a floor at a height.
+    #[inline]
     pub fn sea(&self, height_m: f32) -> Rgb {
         self.sea.at(height_m)
     }
@@ -155,6 +157,7 @@ impl Brush {
 }
 
 /// A colour under light: shadows cool, light warm, as on painted maps.
+#[inline]
 pub fn lit(colour: Rgb, tone: f32) -> Rgb {
     const SHADOW: Rgb = [0.10, 0.12, 0.22];
     const WARM: Rgb = [1.0, 0.97, 0.88];
@@ -170,6 +173,7 @@ pub fn lit(colour: Rgb, tone: f32) -> Rgb {
 }
 
 /// A sea floor under light: all of it through water.
+#[inline]
 fn lit_floor(colour: Rgb, tone: f32) -> Rgb {
     const DEEP: Rgb = [0.25, 0.30, 0.42];
     let gain = |c: usize| if tone < 0.0 { 1.0 + tone * (1.0 - DEEP[c]) } else { 1.0 + 0.8 * tone };

@@ -40,7 +40,10 @@ fn flags() {
     grow(&["--seeds", "1..4"], "--seeds draws a contact sheet; name it with --sheet FILE.png");
     grow(&["--sheet", "a.png"], "--sheet draws several seeds; name them with --seeds A..B");
     grow(&["--seeds", "4..1", "--sheet", "a.png"], "--seeds 4..1: the second seed must not be below the first");
-    grow(&["--seeds", "1..2", "--sheet", "a.txt"], "a.txt: pictures are written as PNG; give the name the ending .png");
+    grow(
+        &["--seeds", "1..2", "--sheet", "a.txt"],
+        "a.txt: pictures are written as PNG or JPEG; give the name the ending .png or .jpg",
+    );
     grow(&["--seeds", "1..2", "--sheet", "no/a.png"], "no/a.png: there is no folder 'no'");
     grow(&["--colour"], "unexpected argument '--colour' found; see 'upthrust --help'");
 }

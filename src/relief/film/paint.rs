@@ -93,20 +93,23 @@ impl Animation {
         light.around.row(y, &mut room.around);
         let per = (0.5 / grid.cell_m) as f32 * light.factor;
         let over = light.factor / (super::super::shade::sigma_px(&self.heights, 2) * grid.cell_m) as f32;
-        let [north, here, south] = &room.form;
+        let Room { form: [north, here, south], around, tone } = room;
         let z = self.heights.row(y);
-        let around = &room.around;
-        let tone = &mut room.tone;
-        let at = |x: usize, west: usize, east: usize| {
-            let slope = [(here[east] - here[west]) * per, (south[x] - north[x]) * per];
-            self.lamps.tone(slope, (z[x] - around[x]) * over)
-        };
-        // The rim has its own neighbours; the rest is one plain loop.
-        for x in 1..last {
-            tone[x] = at(x, x - 1, x + 1);
+        // The rim has its own neighbours; the rest is one plain loop over slices of one length.
+        if last > 1 {
+            let inner = 1..last;
+            let (west, east) = (&here[..last - 1], &here[2..]);
+            let (north, south) = (&north[inner.clone()], &south[inner.clone()]);
+            let (z, around) = (&z[inner.clone()], &around[inner.clone()]);
+            for (i, tone) in tone[inner].iter_mut().enumerate() {
+                let slope = [(east[i] - west[i]) * per, (south[i] - north[i]) * per];
+                *tone = self.lamps.tone(slope, (z[i] - around[i]) * over);
+            }
         }
         for x in [0, last] {
-            tone[x] = at(x, grid.column(x, -1), grid.column(x, 1));
+            let (west, east) = (grid.column(x, -1), grid.column(x, 1));
+            let slope = [(here[east] - here[west]) * per, (south[x] - north[x]) * per];
+            tone[x] = self.lamps.tone(slope, (z[x] - around[x]) * over);
         }
     }
 

@@ -43,6 +43,7 @@ impl Shore {
     }
 
     /// How strongly the sea glows at a pixel.
+    #[inline]
     pub fn glow(&self, index: usize) -> f32 {
         self.glow[self.offshore2[index] as usize]
     }
