@@ -29,6 +29,8 @@ pub(crate) enum RawCommand {
     Inspect(RawInspect),
     /// A picture of a world
     Render(RawRender),
+    /// Replay a kept timeline into a film
+    Film(RawFilm),
     /// The desktop application
     #[command(hide = !cfg!(feature = "app"))]
     App(RawApp),
@@ -61,21 +63,11 @@ pub(crate) struct RawGrow {
     /// Film the run: .mp4 .webm .mpg .mov .gif .png, or frames/%05d.png [default: a film in the world's folder]
     #[arg(long, value_name = "FILE", num_args = 0..=1)]
     pub video: Option<Option<PathBuf>>,
-    /// Frames a second of the film [default: 30]
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub fps: Option<String>,
-    /// Size of the film, pixels [default: 1280x720]
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
-    pub video_size: Option<String>,
-    /// What the film shows: relief, or a layer [default: relief]
-    #[arg(long, value_name = "relief|LAYER")]
-    pub view: Option<String>,
-    /// Show the time in the film
-    #[arg(long)]
-    pub clock: bool,
-    /// What ffmpeg is told besides, in one text
-    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
-    pub ffmpeg_args: Option<String>,
+    #[command(flatten)]
+    pub look: RawLook,
+    /// Keep the run's heights (and other layers, named with commas) in its store, to be filmed later
+    #[arg(long, value_name = "LAYERS", num_args = 0..=1, require_equals = true, default_missing_value = "height")]
+    pub keep_timeline: Option<String>,
     /// Write numbered 16-bit heightmaps of the run into a new folder, all with one range
     #[arg(long, value_name = "DIR")]
     pub frames: Option<PathBuf>,
@@ -103,6 +95,37 @@ pub(crate) struct RawGrow {
     /// Draw the seeds on one contact sheet (PNG) instead of growing a folder
     #[arg(long, value_name = "FILE")]
     pub sheet: Option<PathBuf>,
+}
+
+/// What a film is to be like, as typed.
+#[derive(Debug, Default, Args)]
+pub(crate) struct RawLook {
+    /// Frames a second of the film [default: 30]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub fps: Option<String>,
+    /// Size of the film, pixels [default: 1280x720]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
+    pub video_size: Option<String>,
+    /// What the film shows: relief, or a layer [default: relief]
+    #[arg(long, value_name = "relief|LAYER")]
+    pub view: Option<String>,
+    /// Show the time in the film
+    #[arg(long)]
+    pub clock: bool,
+    /// What ffmpeg is told besides, in one text
+    #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
+    pub ffmpeg_args: Option<String>,
+}
+
+/// `film` as typed.
+#[derive(Debug, Args)]
+pub(crate) struct RawFilm {
+    /// The world's folder, or the store in it
+    pub world: PathBuf,
+    /// The film: .mp4 .webm .mpg .mov .gif .png, or frames/%05d.png
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub look: RawLook,
 }
 
 /// `params` as typed.

@@ -9,6 +9,7 @@ use crate::{
     },
     recipe::{Overrides, Source, find_stage, nearest, stage_kinds},
     timeline,
+    world::Layer,
 };
 
 use super::{
@@ -28,6 +29,7 @@ pub(crate) enum Command {
     Params(Params),
     Inspect(RawInspect),
     Render(Picture),
+    Film { world: PathBuf, film: FilmRequest },
     App(RawApp),
 }
 
@@ -57,6 +59,7 @@ pub(crate) struct Folder {
     pub until: Option<String>,
     pub film: Option<FilmRequest>,
     pub frames: Option<FramesRequest>,
+    pub keep: Option<Vec<Layer>>,
 }
 
 /// How much is said.
@@ -93,6 +96,10 @@ impl Command {
                 let (world, file) = (raw.world, raw.file);
                 Command::Render(Picture { world, file, view: raw.view, overlay: raw.overlay })
             }
+            RawCommand::Film(raw) => {
+                let film = film::request(Some(raw.file), &raw.look)?;
+                Command::Film { world: raw.world, film }
+            }
             RawCommand::App(raw) => Command::App(raw),
         })
     }
@@ -116,7 +123,8 @@ fn grow(raw: RawGrow) -> Result<Grow, CliError> {
             };
             let checkpoint_every = raw.checkpoint_every.as_deref().map_or(Ok(timeline::EVERY), seconds)?;
             let (film, frames) = (film::film(&raw)?, film::frames(&raw)?);
-            Aim::Folder(Folder { out: raw.out, existing, checkpoint_every, until: raw.until, film, frames })
+            let keep = raw.keep_timeline.as_deref().map(film::layers).transpose()?;
+            Aim::Folder(Folder { out: raw.out, existing, checkpoint_every, until: raw.until, film, frames, keep })
         }
         (Some(_), None) => return wrong("--seeds draws a contact sheet; name it with --sheet FILE.png"),
         (None, Some(_)) => return wrong("--sheet draws several seeds; name them with --seeds A..B"),
@@ -131,6 +139,7 @@ fn grow(raw: RawGrow) -> Result<Grow, CliError> {
                 ("--checkpoint-every", raw.checkpoint_every.is_some()),
                 ("--video", raw.video.is_some()),
                 ("--frames", raw.frames.is_some()),
+                ("--keep-timeline", raw.keep_timeline.is_some()),
             ];
             if let Some((flag, _)) = other.iter().find(|(_, given)| *given) {
                 return wrong(format!("{flag} does not go with --sheet, which grows no folder"));

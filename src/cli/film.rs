@@ -1,21 +1,38 @@
-//! What `grow` is asked to film.
+//! What `grow` is asked to film, and `upthrust film`.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
+};
 
 use crate::{
     export::video::{Rate, split_arguments},
-    job::film::{FilmRequest, FramesRequest},
+    job::{
+        self,
+        film::{FilmRequest, FramesRequest},
+    },
+    recipe::nearest,
+    world::Layer,
 };
 
-use super::{CliError, arguments::RawGrow, command::wrong};
+use super::{
+    CliError,
+    arguments::{RawGrow, RawLook},
+    command::{Voice, wrong},
+    output::Output,
+    progress::Progress,
+};
 
 /// The film, if one is asked for.
 pub(crate) fn film(raw: &RawGrow) -> Result<Option<FilmRequest>, CliError> {
     let Some(file) = &raw.video else {
+        let look = &raw.look;
         let about = [
-            ("--fps", raw.fps.is_some()),
-            ("--video-size", raw.video_size.is_some()),
-            ("--view", raw.view.is_some()),
-            ("--clock", raw.clock),
-            ("--ffmpeg-args", raw.ffmpeg_args.is_some()),
+            ("--fps", look.fps.is_some()),
+            ("--video-size", look.video_size.is_some()),
+            ("--view", look.view.is_some()),
+            ("--clock", look.clock),
+            ("--ffmpeg-args", look.ffmpeg_args.is_some()),
         ];
         return match about.iter().find(|(_, given)| *given) {
             Some((flag, _)) => wrong(format!("{flag} is about a film; ask for one with --video")),
@@ -29,18 +46,56 @@ pub(crate) fn film(raw: &RawGrow) -> Result<Option<FilmRequest>, CliError> {
              before --video)"
         ));
     }
-    let ffmpeg_args = raw.ffmpeg_args.as_deref().unwrap_or_default();
+    request(file.clone(), &raw.look).map(Some)
+}
+
+/// A film of this name and look.
+pub(crate) fn request(file: Option<PathBuf>, look: &RawLook) -> Result<FilmRequest, CliError> {
+    let ffmpeg_args = look.ffmpeg_args.as_deref().unwrap_or_default();
     let Some(ffmpeg_args) = split_arguments(ffmpeg_args) else {
         return wrong(format!("--ffmpeg-args {ffmpeg_args}: a quote is not closed"));
     };
-    Ok(Some(FilmRequest {
-        file: file.clone(),
-        rate: raw.fps.as_deref().map(rate).transpose()?,
-        size: raw.video_size.as_deref().map(size).transpose()?,
-        view: raw.view.clone().unwrap_or_else(|| "relief".to_owned()),
-        clock: raw.clock,
+    Ok(FilmRequest {
+        file,
+        rate: look.fps.as_deref().map(rate).transpose()?,
+        size: look.video_size.as_deref().map(size).transpose()?,
+        view: look.view.clone().unwrap_or_else(|| "relief".to_owned()),
+        clock: look.clock,
         ffmpeg_args,
-    }))
+    })
+}
+
+/// The layers of a kept timeline, besides the height.
+pub(crate) fn layers(text: &str) -> Result<Vec<Layer>, CliError> {
+    let stored = || Layer::ALL.iter().filter(|layer| !layer.derived());
+    if text == "all" {
+        return Ok(stored().copied().collect());
+    }
+    let names = || stored().map(|layer| layer.name()).chain(["height", "all"]);
+    let layer = |name: &str| match Layer::from_name(name) {
+        Some(layer) if layer == Layer::Height || !layer.derived() => Ok(layer),
+        _ => {
+            let hint = match nearest(name, names()) {
+                Some(near) => format!("did you mean '{near}'?"),
+                None => format!("there are: {}", names().collect::<Vec<_>>().join(", ")),
+            };
+            wrong(format!("--keep-timeline={text}: no layer '{name}' can be kept ({hint})"))
+        }
+    };
+    text.split(',').map(str::trim).map(layer).collect()
+}
+
+/// Replays a kept timeline.
+pub(crate) fn replay(
+    world: &Path,
+    film: &FilmRequest,
+    cancel: &AtomicBool,
+    output: &mut Output,
+) -> Result<(), CliError> {
+    let mut progress = Progress::new(Voice::Normal);
+    let made = job::film::replay(world, film, cancel, &mut |event| progress.hear(&event));
+    progress.end();
+    output.line(&made?.display().to_string())
 }
 
 /// The heightmaps, if they are asked for.
@@ -79,9 +134,12 @@ mod tests {
         assert!(film(&none).unwrap().is_none() && frames(&none).unwrap().is_none());
         let raw = RawGrow {
             video: Some(Some("a.mp4".into())),
-            fps: Some("29.97".into()),
-            video_size: Some("640x360".into()),
-            ffmpeg_args: Some("-crf 30".into()),
+            look: RawLook {
+                fps: Some("29.97".into()),
+                video_size: Some("640x360".into()),
+                ffmpeg_args: Some("-crf 30".into()),
+                ..RawLook::default()
+            },
             ..RawGrow::default()
         };
         let asked = film(&raw).unwrap().unwrap();

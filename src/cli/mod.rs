@@ -108,6 +108,7 @@ fn parse_and_run(app: Option<OpenApp>) -> Result<(), CliError> {
         Command::Params(what) => reference::params(&what, &mut output),
         Command::Inspect(inspect) => world::inspect(&inspect, &mut output),
         Command::Render(picture) => world::render(&picture, &mut output),
+        Command::Film { world, film } => film::replay(&world, &film, &cancel, &mut output),
         Command::App(raw) => desktop::open(raw, app),
     }
 }

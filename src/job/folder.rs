@@ -5,6 +5,7 @@
 //! worlds/.collision-11.growing/  while it grows, and as long as a stopped run can go on
 //!   lock                         held by the run that fills it
 //!   checkpoints/                 see `timeline`
+//!   timeline/                    kept frames, if they are asked for
 //!   world/                       what will be the finished world
 //! ```
 
@@ -95,6 +96,7 @@ impl Partial {
         remove(&self.path())?;
         if existing != Existing::Resume {
             remove(&self.checkpoints())?;
+            remove(&self.timeline())?;
         }
         fs::create_dir(self.path())?;
         if !self.checkpoints().is_dir() {
@@ -111,6 +113,11 @@ impl Partial {
     /// Where to keep checkpoints.
     pub fn checkpoints(&self) -> PathBuf {
         checkpoints(&self.beside)
+    }
+
+    /// Where to keep the timeline while it grows.
+    pub fn timeline(&self) -> PathBuf {
+        self.beside.join("timeline")
     }
 
     fn has_checkpoint(&self) -> bool {

@@ -11,9 +11,9 @@ use crate::{
     export, measure,
     recipe::Plan,
     relief,
-    timeline::{Checkpoints, Moment, Sink, StageRecord, Timeline, TimelineError},
+    timeline::{Checkpoint, Checkpoints, Moment, Sink, StageRecord, Timeline, TimelineError},
     world::{
-        World,
+        Layer, World,
         store::{self, Provenance},
     },
 };
@@ -22,6 +22,7 @@ use super::{
     Event, Existing, HEIGHT, JobError, MANIFEST, Manifest, RELIEF, STORE,
     film::{Film, FilmPlan, FilmRequest, FilmSink, FramesRequest, HeightFrames},
     folder::{Partial, free, newest},
+    keep::KeepSink,
     picture::write_png,
 };
 
@@ -42,6 +43,8 @@ pub struct Request {
     pub film: Option<FilmRequest>,
     /// Heightmaps of the run.
     pub frames: Option<FramesRequest>,
+    /// Layers to keep along the run, in the store; the height always is one of them.
+    pub keep: Option<Vec<Layer>>,
 }
 
 /// What was grown.
@@ -86,9 +89,13 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     if let Some(checkpoint) = &from {
         tell(Event::Resumed { time_yr: checkpoint.time_yr() });
     }
+    let place = from.as_ref().map(Checkpoint::place);
+    let keep = |layers: &Vec<Layer>| KeepSink::begin(&partial.timeline(), plan.world.grid(), layers, place);
+    let mut keep = request.keep.as_ref().map(keep).transpose()?;
     let mut sinks: Vec<&mut dyn Sink> = Vec::new();
     sinks.extend(film.as_mut().map(|film| film as &mut dyn Sink));
     sinks.extend(frames.as_mut().map(|frames| frames as &mut dyn Sink));
+    sinks.extend(keep.as_mut().map(|keep| keep as &mut dyn Sink));
     let mut timeline = Timeline::new(plan, cancel).until(until).keeping(&mut checkpoints).from(from);
     let world = timeline.run(&mut sinks, &mut |moment| tell(Event::Step(moment)));
     let stages = timeline.records().to_vec();
@@ -104,6 +111,7 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
         }
     }
     let height_png = write(plan, &world, &partial.path(), cancel, tell).map_err(stopped)?;
+    keep.map_or(Ok(()), |keep| keep.finish(&partial.path().join(STORE)))?;
     let mut manifest = Manifest::new(plan, &world, measure::inspect(&world), height_png);
     manifest.stages = stages;
     manifest.until = ended;

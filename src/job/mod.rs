@@ -7,6 +7,7 @@ mod estimate;
 pub mod film;
 mod folder;
 mod grow;
+mod keep;
 mod manifest;
 mod picture;
 mod sheet;

@@ -99,6 +99,11 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
+    /// Which of the running stages, from 0, and the steps done in it.
+    pub fn place(&self) -> (usize, u64) {
+        (self.position.stage, self.position.step)
+    }
+
     /// The world's clock, years.
     pub fn time_yr(&self) -> f64 {
         self.world.time_yr

@@ -10,11 +10,13 @@
 mod clock;
 mod heights;
 mod pace;
+mod replay;
 mod request;
 mod sink;
 
 pub(crate) use heights::HeightFrames;
 pub use heights::{FramesRequest, HEIGHTS_RANGE};
+pub use replay::replay;
 pub use request::{FilmPlan, FilmRequest};
 pub(crate) use sink::FilmSink;
 

@@ -14,7 +14,7 @@ use crate::{
     job::{JobError, grow::run, picture},
     recipe::{Plan, Size},
     relief::{View, film},
-    world::Layer,
+    world::{Layer, World},
 };
 
 /// Longer side of the trial run that finds how high a world will be.
@@ -63,6 +63,17 @@ impl FilmPlan {
         until: Option<usize>,
         cancel: &AtomicBool,
     ) -> Result<Self, JobError> {
+        let (mut planned, view) = Self::of(request, &plan.title)?;
+        if let View::Layer(layer) = view {
+            check_layer(plan, until, layer)?;
+        }
+        planned.animation.range_m = range_over_sea(plan, until, cancel)?;
+        planned.clips = clips(plan, until, planned.encoding.rate.per_second());
+        Ok(planned)
+    }
+
+    /// What a request says by itself: no clip yet, and no range.
+    pub(super) fn of(request: &FilmRequest, title: &str) -> Result<(Self, View), JobError> {
         let file = match &request.file {
             Some(file) => file.clone(),
             // Smaller, but there.
@@ -77,19 +88,17 @@ impl FilmPlan {
             check_place(&file, format)?;
         }
         let view = picture::view(&request.view)?;
-        if let View::Layer(layer) = view {
-            check_layer(plan, until, layer)?;
-        }
-        let range_m = range_over_sea(plan, until, cancel)?;
         let ffmpeg_args = request.ffmpeg_args.clone();
-        Ok(Self {
+        let animation = film::Options { size, view: view.clone(), range_m: EARTH_M, title: Some(title.to_owned()) };
+        let planned = Self {
             in_folder: request.file.is_none(),
             encoding: Settings { format, size, rate, hold_s: HOLD_S, ffmpeg_args },
-            animation: film::Options { size, view, range_m, title: Some(plan.title.clone()) },
-            clips: clips(plan, until, rate.per_second()),
+            animation,
+            clips: Vec::new(),
             clock: request.clock,
             file,
-        })
+        };
+        Ok((planned, view))
     }
 
     /// The same film in a folder.
@@ -146,7 +155,12 @@ pub fn range_over_sea(plan: &Plan, until: Option<usize>, cancel: &AtomicBool) ->
     let shrink = |side: usize| (side * TRIAL_SIDE / width.max(height)).clamp(16, side);
     small.world.size = Size::Sides([shrink(width), shrink(height)]);
     let (world, _) = run(&small, until, cancel, &mut |_| ())?;
+    Ok(range_of(&world))
+}
+
+/// The heights of a world and some more, m over its sea.
+pub(super) fn range_of(world: &World) -> [f64; 2] {
     let (low, high) = world.height().range().map_or((0.0, 1.0), |(low, high)| (f64::from(low), f64::from(high)));
     let margin = MARGIN * (high - low).max(1.0);
-    Ok([low - margin - world.sea_level_m, high + margin - world.sea_level_m])
+    [low - margin - world.sea_level_m, high + margin - world.sea_level_m]
 }

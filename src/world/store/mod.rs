@@ -6,6 +6,7 @@
 //!   x  y               centres of the cells in metres, x to the east, y to the south
 //!   height bedrock ... one array a layer, dimensions (y, x); height is derived and only for readers
 //!   tables/NAME/COLUMN one array a column, dimension row
+//!   timeline/          layers along t, where a run was told to keep them
 //! ```
 //!
 //! Layers are f32, or integers where the catalogue calls them classes or identities and every value is one. Inner
@@ -16,9 +17,11 @@
 //! This file and its children alone name zarrs. They know no process.
 
 mod read;
+mod timeline;
 mod write;
 
 pub use read::read;
+pub use timeline::{Frame, Recorder, Recording};
 pub use write::write;
 
 use std::path::{Path, PathBuf};

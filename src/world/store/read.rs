@@ -23,8 +23,7 @@ const MOST_CELLS: usize = 1 << 31;
 /// Reads the world at `path`, or in the folder `path`.
 pub fn read(path: &Path) -> Result<(World, Provenance), StoreError> {
     let path = locate(path)?;
-    let store = FilesystemStore::new(&path).map_err(|e| damaged(&path, e))?;
-    let reader = Reader { store: Arc::new(store), path };
+    let reader = Reader::open(path)?;
     let attributes = reader.attributes("")?;
     reader.check_format(&attributes)?;
     let provenance = Provenance {
@@ -56,29 +55,34 @@ pub fn read(path: &Path) -> Result<(World, Provenance), StoreError> {
     Ok((world, provenance))
 }
 
-fn damaged(path: &Path, cause: impl std::fmt::Display) -> StoreError {
+pub(super) fn damaged(path: &Path, cause: impl std::fmt::Display) -> StoreError {
     // Errors from below may span lines; the user gets one.
     let cause = cause.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     StoreError::Damaged { path: path.to_owned(), cause }
 }
 
-struct Reader {
+pub(super) struct Reader {
     store: Arc<FilesystemStore>,
-    path: PathBuf,
+    pub path: PathBuf,
 }
 
 impl Reader {
-    fn damaged(&self, cause: impl std::fmt::Display) -> StoreError {
+    pub fn open(path: PathBuf) -> Result<Self, StoreError> {
+        let store = FilesystemStore::new(&path).map_err(|e| damaged(&path, e))?;
+        Ok(Self { store: Arc::new(store), path })
+    }
+
+    pub fn damaged(&self, cause: impl std::fmt::Display) -> StoreError {
         damaged(&self.path, cause)
     }
 
-    fn attributes(&self, node: &str) -> Result<Map<String, Value>, StoreError> {
+    pub fn attributes(&self, node: &str) -> Result<Map<String, Value>, StoreError> {
         let group = Group::open(self.store.clone(), &format!("/{node}"))
             .map_err(|e| self.damaged(format!("{}: {e}", if node.is_empty() { "zarr.json" } else { node })))?;
         Ok(group.attributes().clone())
     }
 
-    fn get<T: DeserializeOwned>(&self, attributes: &Map<String, Value>, name: &str) -> Result<T, StoreError> {
+    pub fn get<T: DeserializeOwned>(&self, attributes: &Map<String, Value>, name: &str) -> Result<T, StoreError> {
         let value = attributes.get(name).ok_or_else(|| self.damaged(format!("the attribute '{name}' is missing")))?;
         T::deserialize(value).map_err(|e| self.damaged(format!("the attribute '{name}': {e}")))
     }
@@ -112,7 +116,7 @@ impl Reader {
         Ok(ledger)
     }
 
-    fn array(&self, node: &str) -> Result<Array<FilesystemStore>, StoreError> {
+    pub fn array(&self, node: &str) -> Result<Array<FilesystemStore>, StoreError> {
         Array::open(self.store.clone(), &format!("/{node}")).map_err(|e| self.damaged(format!("{node}: {e}")))
     }
 
@@ -123,11 +127,11 @@ impl Reader {
         }
         let kind = array.data_type();
         let data = if *kind == data_type::float32() {
-            self.plane(node, &array, grid, |v: f32| v)?
+            self.plane(node, &array, &[], grid, |v: f32| v)?
         } else if *kind == data_type::uint8() {
-            self.plane(node, &array, grid, |v: u8| v as f32)?
+            self.plane(node, &array, &[], grid, |v: u8| v as f32)?
         } else if *kind == data_type::int16() {
-            self.plane(node, &array, grid, |v: i16| v as f32)?
+            self.plane(node, &array, &[], grid, |v: i16| v as f32)?
         } else {
             return Err(self.damaged(format!("{node}: values of kind {kind}")));
         };
@@ -138,16 +142,22 @@ impl Reader {
         }
     }
 
-    fn plane<T: ElementOwned + Copy + Send>(
+    /// The plane of an array at these leading indices.
+    pub fn plane<T: ElementOwned + Copy + Send>(
         &self,
         node: &str,
         array: &Array<FilesystemStore>,
+        before: &[u64],
         grid: Grid,
         convert: impl Fn(T) -> f32 + Sync,
     ) -> Result<Vec<f32>, StoreError> {
         let failed = |cause: &dyn std::fmt::Display| self.damaged(format!("{node}: {cause}"));
-        let shard = array.chunk_shape_usize(&[0, 0]).map_err(|e| failed(&e))?;
-        let (tall, wide) = (shard[0], shard[1]);
+        let place = |row: u64, column: u64| [before, &[row, column]].concat();
+        let shard = array.chunk_shape_usize(&place(0, 0)).map_err(|e| failed(&e))?;
+        let (tall, wide) = match shard[..] {
+            [.., tall, wide] if tall > 0 && wide > 0 => (tall, wide),
+            _ => return Err(failed(&"its chunks are not those of a map")),
+        };
         if tall.checked_mul(wide).is_none_or(|cells| cells > MOST_CELLS) {
             return Err(failed(&"its chunks are too large"));
         }
@@ -158,7 +168,7 @@ impl Reader {
             let shards: Vec<Vec<T>> = (0..across)
                 .into_par_iter()
                 .map(|column| {
-                    let at = [band as u64, column as u64];
+                    let at = place(band as u64, column as u64);
                     let values = array.retrieve_chunk_if_exists::<Vec<T>>(&at).map_err(|e| failed(&e))?;
                     values
                         .filter(|values| values.len() == tall * wide)
@@ -200,7 +210,7 @@ impl Reader {
         Ok(table)
     }
 
-    fn line<T: ElementOwned>(&self, node: &str, array: &Array<FilesystemStore>) -> Result<Vec<T>, StoreError> {
+    pub fn line<T: ElementOwned>(&self, node: &str, array: &Array<FilesystemStore>) -> Result<Vec<T>, StoreError> {
         if array.shape() == [0] {
             return Ok(Vec::new());
         }

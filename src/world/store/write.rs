@@ -73,29 +73,27 @@ fn remove(path: &Path) -> Result<(), StoreError> {
     }
 }
 
-fn disk(path: &Path) -> impl Fn(io::Error) -> StoreError + '_ {
+pub(super) fn disk(path: &Path) -> impl Fn(io::Error) -> StoreError + '_ {
     move |cause| StoreError::Disk { path: path.to_owned(), cause }
 }
 
 /// A store being filled, and the metadata of all its nodes for the consolidated copy.
-struct Writer {
+pub(super) struct Writer {
     store: Arc<FilesystemStore>,
-    path: PathBuf,
-    nodes: BTreeMap<String, Value>,
+    pub path: PathBuf,
+    pub nodes: BTreeMap<String, Value>,
 }
 
 /// What an array says of itself.
-struct Head<'a> {
-    node: &'a str,
-    dimensions: &'a [&'a str],
-    shape: &'a [u64],
-    attributes: Value,
+pub(super) struct Head<'a> {
+    pub node: &'a str,
+    pub dimensions: &'a [&'a str],
+    pub shape: &'a [u64],
+    pub attributes: Value,
 }
 
 fn fill(world: &World, height: &Field<f32>, provenance: &Provenance, path: &Path) -> Result<(), StoreError> {
-    let store =
-        FilesystemStore::new(path).map_err(|e| StoreError::Write { path: path.to_owned(), cause: e.to_string() })?;
-    let mut writer = Writer { store: Arc::new(store), path: path.to_owned(), nodes: BTreeMap::new() };
+    let mut writer = Writer::new(path)?;
     writer.axis("x", "X", "distance east of the map's north-west corner", world.grid.width, world.grid.cell_m)?;
     writer.axis("y", "Y", "distance south of the map's north-west corner", world.grid.height, world.grid.cell_m)?;
     writer.layer(Layer::Height, height)?;
@@ -112,11 +110,17 @@ fn fill(world: &World, height: &Field<f32>, provenance: &Provenance, path: &Path
 }
 
 impl Writer {
-    fn failed(&self, cause: impl std::fmt::Display) -> StoreError {
+    pub fn new(path: &Path) -> Result<Self, StoreError> {
+        let store = FilesystemStore::new(path)
+            .map_err(|e| StoreError::Write { path: path.to_owned(), cause: e.to_string() })?;
+        Ok(Self { store: Arc::new(store), path: path.to_owned(), nodes: BTreeMap::new() })
+    }
+
+    pub fn failed(&self, cause: impl std::fmt::Display) -> StoreError {
         StoreError::Write { path: self.path.clone(), cause: cause.to_string() }
     }
 
-    fn axis(&mut self, name: &str, axis: &str, title: &str, cells: usize, cell_m: f64) -> Result<(), StoreError> {
+    pub fn axis(&mut self, name: &str, axis: &str, title: &str, cells: usize, cell_m: f64) -> Result<(), StoreError> {
         let centres: Vec<f64> = (0..cells).map(|i| (i as f64 + 0.5) * cell_m).collect();
         let attributes = json!({ "units": "m", "long_name": title, "axis": axis });
         let head = Head { node: name, dimensions: &[name], shape: &[cells as u64], attributes };
@@ -171,7 +175,7 @@ impl Writer {
     }
 
     /// A one-dimensional array, in one chunk.
-    fn line<T: Element>(
+    pub fn line<T: Element>(
         &mut self,
         head: &Head,
         kind: impl Into<ArrayBuilderDataType>,
@@ -213,7 +217,7 @@ impl Writer {
         })
     }
 
-    fn array(&mut self, head: &Head, mut builder: ArrayBuilder) -> Result<Array<FilesystemStore>, StoreError> {
+    pub fn array(&mut self, head: &Head, mut builder: ArrayBuilder) -> Result<Array<FilesystemStore>, StoreError> {
         if let Value::Object(attributes) = &head.attributes {
             builder.attributes(attributes.clone());
         }
@@ -261,6 +265,6 @@ impl Writer {
 }
 
 /// Chunks of nothing but zeros are stored too, so that a missing file is a damaged world.
-fn whole_chunks() -> CodecOptions {
+pub(super) fn whole_chunks() -> CodecOptions {
     CodecOptions::default().with_store_empty_chunks(true)
 }

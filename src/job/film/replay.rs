@@ -1,0 +1,92 @@
+//! A film of a timeline that was kept.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+use super::{Film, FilmPlan, FilmRequest, pace, request};
+use crate::{
+    job::{Event, JobError, open_world},
+    recipe::{Overrides, Plan, Source},
+    relief::View,
+    timeline::{Moment, TimelineError},
+    world::{
+        World,
+        store::{Provenance, Recording},
+    },
+};
+
+/// Replays the timeline that was kept in the world at `path` into a film.
+pub fn replay(
+    path: &Path,
+    request: &FilmRequest,
+    cancel: &AtomicBool,
+    tell: &mut dyn FnMut(Event),
+) -> Result<PathBuf, JobError> {
+    let (world, provenance) = open_world(path)?;
+    let recording = Recording::open(path, world.grid)?.filter(|recording| !recording.frames().is_empty());
+    let Some(recording) = recording else {
+        let what = "no timeline was kept in it; grow it with --keep-timeline, or film it while it grows with --video";
+        return Err(JobError::Refused(format!("{}: {what}", path.display())));
+    };
+    let planned = plan(request, &recording, &world, &provenance)?;
+    let mut film = Film::new(&planned, world.grid)?;
+    let stages = planned.clips.len();
+    for (i, frame) in recording.frames().iter().enumerate() {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(TimelineError::Cancelled.into());
+        }
+        let label = planned.clips.get(frame.stage).map_or("", |clip| clip.caption.as_str());
+        let moment =
+            Moment { stage: frame.stage, stages, label, step: frame.step, done: frame.done, time_yr: frame.time_yr };
+        if film.wants(&moment) {
+            film.frame(&recording.world(i)?, &moment)?;
+        }
+        tell(Event::Step(&moment));
+    }
+    film.finish()
+}
+
+/// The film that was asked for, as far as the kept layers allow it.
+fn plan(
+    request: &FilmRequest,
+    recording: &Recording,
+    world: &World,
+    provenance: &Provenance,
+) -> Result<FilmPlan, JobError> {
+    let source = Source {
+        name: provenance.name.clone(),
+        file: provenance.name.clone(),
+        folder: PathBuf::new(),
+        text: provenance.recipe.clone(),
+    };
+    // A recipe whose files are gone by now only costs the film its captions and its pace.
+    let recipe = Plan::new(&source, &Overrides::default()).ok();
+    let title = recipe.as_ref().map_or(provenance.name.as_str(), |recipe| recipe.title.as_str());
+    let (mut planned, view) = FilmPlan::of(request, title)?;
+    if let View::Layer(layer) = view
+        && !layer.derived()
+        && !recording.layers().contains(&layer)
+    {
+        let kept: Vec<&str> = recording.layers().iter().map(|layer| layer.name()).collect();
+        let name = layer.name();
+        return Err(JobError::Refused(format!(
+            "--view {name}: that layer was not kept (there are: relief, {}); grow with --keep-timeline={name}",
+            kept.join(", ")
+        )));
+    }
+    let per_second = planned.encoding.rate.per_second();
+    let stages = recording.frames().last().map_or(0, |frame| frame.stage + 1);
+    planned.clips = match &recipe {
+        Some(recipe) => {
+            let until = recipe.running().nth(stages.saturating_sub(1)).map(|(place, _)| place);
+            pace::clips(recipe, until, per_second)
+        }
+        None => pace::equal(stages, per_second),
+    };
+    if !recipe.is_some_and(|recipe| recipe.running().any(|(_, stage)| stage.takes_time())) {
+        planned.animation.range_m = request::range_of(world);
+    }
+    Ok(planned)
+}
