@@ -27,6 +27,8 @@ pub(crate) enum RawCommand {
     Params(RawParams),
     /// Numbers about a world
     Inspect(RawInspect),
+    /// Write a heightmap or a layer for other programs; the ending gives the format
+    Export(Box<RawExport>),
     /// A picture of a world
     Render(RawRender),
     /// Replay a kept timeline into a film
@@ -152,6 +154,48 @@ pub(crate) struct RawInspect {
     /// Write the numbers to a file as well (.json for JSON, else text)
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
+}
+
+/// `export` as typed.
+#[derive(Debug, Args)]
+pub(crate) struct RawExport {
+    /// The world's folder, or the store in it
+    pub world: PathBuf,
+    /// The file: .png .tif .exr .asc .r16 .raw .r32
+    pub file: PathBuf,
+    /// A layer, normals (a normal map) or weights (of sand, grass, rock and snow)
+    #[arg(long, value_name = "NAME", default_value = "height")]
+    pub layer: String,
+    /// Size, order and the numbers to type as this program wants them: unreal, unity, godot, azgaar
+    #[arg(long, value_name = "ENGINE")]
+    pub engine: Option<String>,
+    /// Cut out a square: its west edge, its north edge, its side
+    #[arg(long, value_name = "X_KM,Y_KM,SIZE_KM", allow_hyphen_values = true)]
+    pub window: Option<String>,
+    /// Samples along the longer side, or along a tile [default: one a cell]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub size: Option<String>,
+    /// What black and white stand for, m (or the layer's unit) [default: least and greatest]
+    #[arg(long, value_name = "MIN..MAX", allow_hyphen_values = true)]
+    pub range: Option<String>,
+    /// Cut into N x N tiles that share their edges
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub tiles: Option<String>,
+    /// Bits of a sample: 8 or 16 for .png, 16 or 32 for .tif [default: 16, .tif 32]
+    #[arg(long, value_name = "8|16|32", allow_hyphen_values = true)]
+    pub bits: Option<String>,
+    /// Most significant byte first (.r16 .raw .r32)
+    #[arg(long)]
+    pub big_endian: bool,
+    /// Southern row first (.r16 .raw .r32)
+    #[arg(long, value_name = "y")]
+    pub flip: Option<String>,
+    /// Green of a normal map: up (OpenGL) or down (DirectX) [default: up, for unreal down]
+    #[arg(long, value_name = "up|down")]
+    pub normal_y: Option<String>,
+    /// Replace files that exist
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// `render` as typed.

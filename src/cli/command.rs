@@ -4,7 +4,7 @@ use std::{ops::RangeInclusive, path::PathBuf, time::Duration};
 
 use crate::{
     job::{
-        Existing, Picture, SHEET_MOST,
+        Existing, ExportRequest, Picture, SHEET_MOST,
         film::{FilmRequest, FramesRequest},
     },
     recipe::{Overrides, Source, find_stage, nearest, stage_kinds},
@@ -15,7 +15,7 @@ use crate::{
 use super::{
     CliError,
     arguments::{RawApp, RawCommand, RawGrow, RawInspect, RawParams},
-    film,
+    export, film,
 };
 
 /// The recipe of a bare `grow`.
@@ -28,6 +28,7 @@ pub(crate) enum Command {
     Presets(Option<String>),
     Params(Params),
     Inspect(RawInspect),
+    Export(Box<ExportRequest>),
     Render(Picture),
     Film { world: PathBuf, film: FilmRequest },
     App(RawApp),
@@ -92,6 +93,7 @@ impl Command {
             RawCommand::Presets { name } => Command::Presets(name),
             RawCommand::Params(raw) => Command::Params(params(raw)?),
             RawCommand::Inspect(raw) => Command::Inspect(raw),
+            RawCommand::Export(raw) => Command::Export(Box::new(export::validate(*raw)?)),
             RawCommand::Render(raw) => {
                 let (world, file) = (raw.world, raw.file);
                 Command::Render(Picture { world, file, view: raw.view, overlay: raw.overlay })

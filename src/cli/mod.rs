@@ -7,6 +7,7 @@
 mod arguments;
 mod command;
 mod desktop;
+mod export;
 mod film;
 mod grow;
 mod output;
@@ -107,6 +108,7 @@ fn parse_and_run(app: Option<OpenApp>) -> Result<(), CliError> {
         Command::Presets(name) => reference::presets(name.as_deref(), &mut output),
         Command::Params(what) => reference::params(&what, &mut output),
         Command::Inspect(inspect) => world::inspect(&inspect, &mut output),
+        Command::Export(request) => export::run(&request, &mut output),
         Command::Render(picture) => world::render(&picture, &mut output),
         Command::Film { world, film } => film::replay(&world, &film, &cancel, &mut output),
         Command::App(raw) => desktop::open(raw, app),

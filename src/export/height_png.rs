@@ -5,14 +5,14 @@
 
 use std::path::Path;
 
-use image::{ExtendedColorType, ImageEncoder, codecs::png};
 use serde::Serialize;
 
-use super::{ExportError, write_whole};
-use crate::{
-    grid::{Field, for_each_row},
-    world::World,
+use super::{
+    ExportError,
+    raster::{Lattice, Layout, Levels, Raster, Samples, png_image},
+    write_whole,
 };
+use crate::world::World;
 
 /// The heights that black and white stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -26,44 +26,37 @@ pub struct HeightRange {
 /// Writes the world's heights. A flat world gets a range of 1 m, so that its value is 0 everywhere.
 pub fn write_height_png(world: &World, path: &Path) -> Result<HeightRange, ExportError> {
     let height = world.height();
-    let Some((low, high)) = height.range() else {
+    let Some(levels) = Levels::of(&height) else {
         let (x, y) = height.first_non_finite().unwrap_or_default();
-        return Err(ExportError::NotFinite { x, y });
+        return Err(ExportError::NotFinite { layer: "height", x, y });
     };
-    let black_m = low as f64;
-    let range = HeightRange { black_m, white_m: if high > low { high as f64 } else { black_m + 1.0 } };
-    write(&height, range, path)?;
-    Ok(range)
+    write_levels(
+        &Raster { lattice: Lattice::cells(&world.grid), channels: 1, samples: Samples::U16(levels.to_u16(&height)) },
+        path,
+    )?;
+    Ok(HeightRange { black_m: levels.black, white_m: levels.white })
 }
 
 /// Writes the world's heights over a range that is given; returns how many cells were lower or higher than that.
 pub fn write_height_png_within(world: &World, range: HeightRange, path: &Path) -> Result<u64, ExportError> {
     let height = world.height();
     if let Some((x, y)) = height.first_non_finite() {
-        return Err(ExportError::NotFinite { x, y });
+        return Err(ExportError::NotFinite { layer: "height", x, y });
     }
     let (black, white) = (range.black_m as f32, range.white_m as f32);
     let cut = height.data.iter().filter(|&&h| h < black || h > white).count() as u64;
-    write(&height, range, path)?;
+    let levels = Levels { black: range.black_m, white: range.white_m };
+    write_levels(
+        &Raster { lattice: Lattice::cells(&world.grid), channels: 1, samples: Samples::U16(levels.to_u16(&height)) },
+        path,
+    )?;
     Ok(cut)
 }
 
-fn write(height: &Field<f32>, range: HeightRange, path: &Path) -> Result<(), ExportError> {
-    let per_m = 65535.0 / (range.white_m - range.black_m);
-    let (width, rows) = (height.grid.width, height.grid.height);
-    let mut samples = vec![0u16; height.grid.cells()];
-    for_each_row(&mut samples, width, |y, row| {
-        for (sample, &h) in row.iter_mut().zip(height.row(y)) {
-            // Half up; what lies beyond the range is cut off by the conversion.
-            *sample = ((h as f64 - range.black_m) * per_m + 0.5) as u16;
-        }
-    });
-    // The encoder takes native byte order and turns it to PNG's.
-    let bytes: &[u8] = bytemuck::cast_slice(&samples);
-    write_whole(path, |file| {
-        png::PngEncoder::new_with_quality(file, png::CompressionType::Fast, png::FilterType::Up)
-            .write_image(bytes, width as u32, rows as u32, ExtendedColorType::L16)
-            .map_err(|e| ExportError::Encode { path: path.to_owned(), cause: e.to_string() })
+fn write_levels(raster: &Raster, path: &Path) -> Result<(), ExportError> {
+    write_whole(path, |out| {
+        png_image::encode(raster, Layout::default(), out)
+            .map_err(|cause| ExportError::Encode { path: path.to_owned(), cause })
     })
 }
 

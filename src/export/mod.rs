@@ -2,18 +2,30 @@
 //!
 //! | ending | holds | written by |
 //! |---|---|---|
-//! | `.png` | heights, 16-bit grayscale | [`write_height_png`] |
+//! | `.png` | heights, layers, normals, weights: gray or colour, 16 or 8 bits | [`raster`] |
+//! | `.tif` | a layer with its place in metres (GeoTIFF), 32-bit floating point or 16 bits | [`raster`] |
+//! | `.exr` | a layer or normals, 32-bit floating point | [`raster`] |
+//! | `.asc` | a layer as text (ESRI ASCII grid) | [`raster`] |
+//! | `.r16 .raw .r32` | a layer as bare numbers | [`raster`] |
 //! | `.glb` `.obj` `.stl` | the ground as a mesh | [`write_mesh`] |
 //! | films | pictures in time order | [`video`] |
 //!
 //! A file is written beside its place and moved there when it is whole. This room reads worlds and never changes them.
 
+pub mod engine;
 mod height_png;
 mod mesh;
+mod normals;
+pub mod raster;
+mod staged;
 pub mod video;
+mod weights;
 
 pub use height_png::{HeightRange, write_height_png, write_height_png_within};
 pub use mesh::{MESH_SIDES, MeshFormat, MeshOptions, write_glb, write_mesh, write_obj, write_stl};
+pub use normals::{Green, encoded as encoded_normal, normals};
+pub use staged::Staged;
+pub use weights::{MATERIALS, WeightRules};
 
 use std::{
     fs::{self, File},
@@ -35,8 +47,8 @@ pub enum ExportError {
     /// What is written to took no more.
     #[error("cannot write: {0}")]
     Stream(#[from] io::Error),
-    /// The picture could not be encoded.
-    #[error("{path}: cannot encode the picture: {cause}")]
+    /// The file could not be encoded.
+    #[error("{path}: cannot write this file: {cause}")]
     Encode {
         /// The file.
         path: PathBuf,
@@ -54,14 +66,22 @@ pub enum ExportError {
         /// What went wrong, in the words of whoever made it.
         cause: String,
     },
-    /// The heights hold a value that is not a number.
-    #[error("height is not finite at cell ({x}, {y})")]
+    /// A layer holds a value that is not a number.
+    #[error("{layer} is not finite at cell ({x}, {y})")]
     NotFinite {
+        /// The layer.
+        layer: &'static str,
         /// Column of the cell.
         x: usize,
         /// Row of the cell.
         y: usize,
     },
+}
+
+/// Where a file stands until it is whole.
+fn beside(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(".{name}.partial-{}", std::process::id()))
 }
 
 /// Lets `fill` write a file beside `path`, and moves it there when it is whole.
@@ -70,8 +90,7 @@ pub fn write_whole(
     fill: impl FnOnce(&mut BufWriter<File>) -> Result<(), ExportError>,
 ) -> Result<(), ExportError> {
     let disk = |cause| ExportError::Disk { path: path.to_owned(), cause };
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let beside = path.with_file_name(format!(".{name}.partial-{}", std::process::id()));
+    let beside = beside(path);
     let written = File::create(&beside).map_err(disk).and_then(|file| {
         let mut file = BufWriter::new(file);
         fill(&mut file)?;

@@ -4,6 +4,7 @@
 //! arguments.
 
 mod estimate;
+mod export;
 pub mod film;
 mod folder;
 mod grow;
@@ -13,6 +14,7 @@ mod picture;
 mod sheet;
 
 pub use estimate::{Estimate, estimate};
+pub use export::{ExportRequest, Exported, export};
 pub use folder::Existing;
 pub use grow::{Grown, Request, grow};
 pub use manifest::Manifest;

@@ -97,7 +97,7 @@ struct Lattice {
 fn ground(world: &World) -> Result<Field<f32>, ExportError> {
     let height = world.height();
     match height.first_non_finite() {
-        Some((x, y)) => Err(ExportError::NotFinite { x, y }),
+        Some((x, y)) => Err(ExportError::NotFinite { layer: "height", x, y }),
         None => Ok(height),
     }
 }

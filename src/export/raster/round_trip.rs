@@ -1,0 +1,1 @@
+//! Written, read back by other decoders, compared.
