@@ -34,7 +34,7 @@ impl Levels {
 
     /// A value as a number from 0 to `most`, not yet rounded or bounded.
     pub fn place(&self, value: f64, most: f64) -> f64 {
-        (value - self.black) * (most / self.span())
+        (value - self.black) * most / self.span()
     }
 
     /// The field in 16 bits, half up, bounded by black and white.

@@ -95,7 +95,7 @@ impl<'a> Order<'a> {
         }
         if engine == Engine::Unreal && reads_as_tiles(&stem) {
             return refuse(format!(
-                "{file}: Unreal takes such a name for one tile of many; choose one without numbers at an x"
+                "{file}: Unreal takes such a name for one tile of many; choose one without a number after an x"
             ));
         }
         if self.layout.big_endian && engine != Engine::Unity {
