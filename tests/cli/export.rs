@@ -58,10 +58,7 @@ fn bad_requests_leave_nothing() {
     refused(&["h.png", "--bits", "12"], "--bits 12: must be 8, 16 or 32");
     refused(&["h.r16", "--flip", "x"], "--flip x: rows can be flipped with 'y', nothing else");
     refused(&["no/h.png"], "no/h.png: there is no folder 'no'");
-    refused(
-        &["w/height.png"],
-        "w/height.png: exists; choose another name, or replace it with --force",
-    );
+    refused(&["w/height.png"], "w/height.png: exists; choose another name, or replace it with --force");
 }
 
 #[test]

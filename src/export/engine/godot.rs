@@ -21,7 +21,7 @@ pub fn settings(facts: &Facts) -> Value {
         "engine": "godot",
         "addon": "Terrain3D",
         "import_scale": 1.0,
-        "height_offset_m": -facts.sea_level_m,
+        "height_offset_m": 0.0 - facts.sea_level_m,
         "height_offset_is": "moves the sea to Y = 0",
         "vertex_spacing_m": facts.tile.spacing_m,
         "tiles_a_side": facts.tiles,
