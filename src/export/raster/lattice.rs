@@ -254,6 +254,18 @@ mod tests {
     }
 
     #[test]
+    fn a_seamless_world_stays_seamless() {
+        let grid = Grid::new(48, 48, 480.0, Edges::Wrap);
+        let field = Field::from_fn(grid, |x, y| ((x * 37 + y * 91) % 53) as f32);
+        for side in [17, 49, 130] {
+            let read = Lattice::over(&grid, None, side, Sampling::Vertices).read(&field);
+            // The last vertices are the first ones; only the sum's own rounding may differ.
+            assert!((0..side).all(|y| (read.at(0, y) - read.at(side - 1, y)).abs() < 1e-4), "{side}");
+            assert!((0..side).all(|x| (read.at(x, 0) - read.at(x, side - 1)).abs() < 1e-4), "{side}");
+        }
+    }
+
+    #[test]
     fn nothing_leaves_the_range_of_the_source() {
         let grid = Grid::new(40, 40, 40.0, Edges::Open);
         let cliff = Field::from_fn(grid, |x, _| if x < 20 { 0.0 } else { 1.0 });
