@@ -27,7 +27,7 @@ pub(crate) enum RawCommand {
     Params(RawParams),
     /// Numbers about a world
     Inspect(RawInspect),
-    /// Write a heightmap or a layer for other programs; the ending gives the format
+    /// Write a heightmap, a layer or a mesh for other programs; the ending gives the format
     Export(Box<RawExport>),
     /// A picture of a world
     Render(RawRender),
@@ -161,7 +161,7 @@ pub(crate) struct RawInspect {
 pub(crate) struct RawExport {
     /// The world's folder, or the store in it
     pub world: PathBuf,
-    /// The file: .png .tif .exr .asc .r16 .raw .r32
+    /// The file: .png .tif .exr .asc .r16 .raw .r32, meshes .glb .obj .stl
     pub file: PathBuf,
     /// A layer, normals (a normal map) or weights (of sand, grass, rock and snow)
     #[arg(long, value_name = "NAME", default_value = "height")]
@@ -172,7 +172,7 @@ pub(crate) struct RawExport {
     /// Cut out a square: its west edge, its north edge, its side
     #[arg(long, value_name = "X_KM,Y_KM,SIZE_KM", allow_hyphen_values = true)]
     pub window: Option<String>,
-    /// Samples along the longer side, or along a tile [default: one a cell]
+    /// Samples along the longer side, or along a tile [default: one a cell; meshes 512]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub size: Option<String>,
     /// What black and white stand for, m (or the layer's unit) [default: least and greatest]

@@ -14,23 +14,51 @@ pub enum Points {
     Corners,
 }
 
+/// Evenly spaced places along an axis, in cells: 0 is the middle of the first one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Places {
+    /// The first place.
+    pub first: f64,
+    /// Cells from one place to the next.
+    pub step: f64,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl Places {
+    fn over(from: usize, count: usize, points: Points) -> Self {
+        // A single point on a rim of two has no second to measure from; it stands in the middle like a centre.
+        let corners = points == Points::Corners && count > 1;
+        let step = from as f64 / if corners { count - 1 } else { count } as f64;
+        Self { first: if corners { -0.5 } else { 0.5 * step - 0.5 }, step, count }
+    }
+}
+
 /// `width` x `height` samples over the same map, row by row from the north.
 pub fn resample(field: &Field<f32>, width: usize, height: usize, points: Points) -> Vec<f32> {
     let grid = field.grid;
-    let across = taps(grid.width, width, points, grid.edges);
-    let along = taps(grid.height, height, points, grid.edges);
-    let mut narrow = vec![0.0f32; width * grid.height];
+    resample_at(field, Places::over(grid.width, width, points), Places::over(grid.height, height, points))
+}
+
+/// Samples where `across` and `along` meet, row by row from the north. Only the rows that they need are read.
+pub fn resample_at(field: &Field<f32>, across: Places, along: Places) -> Vec<f32> {
+    let (grid, width) = (field.grid, across.count);
+    let across = taps(grid.width, across, grid.edges);
+    let along = taps(grid.height, along, grid.edges);
+    let rows = || along.iter().flatten().map(|&(i, _)| i);
+    let (top, bottom) = (rows().min().unwrap_or(0), rows().max().unwrap_or(0));
+    let mut narrow = vec![0.0f32; width * (bottom - top + 1)];
     for_each_row(&mut narrow, width, |y, out| {
-        let row = field.row(y);
+        let row = field.row(top + y);
         for (value, tap) in out.iter_mut().zip(&across) {
             *value = tap.iter().map(|&(i, weight)| weight * row[i] as f64).sum::<f64>() as f32;
         }
     });
-    let mut out = vec![0.0f32; width * height];
+    let mut out = vec![0.0f32; width * along.len()];
     for_each_row(&mut out, width, |y, row| {
         let mut sums = vec![0.0f64; width];
         for &(i, weight) in &along[y] {
-            for (sum, &v) in sums.iter_mut().zip(&narrow[i * width..][..width]) {
+            for (sum, &v) in sums.iter_mut().zip(&narrow[(i - top) * width..][..width]) {
                 *sum += weight * v as f64;
             }
         }
@@ -42,15 +70,13 @@ pub fn resample(field: &Field<f32>, width: usize, height: usize, points: Points)
 }
 
 /// For each new sample along an axis, which old ones it takes, and how much of each.
-fn taps(from: usize, to: usize, points: Points, edges: Edges) -> Vec<Vec<(usize, f64)>> {
-    // A single point on a rim of two has no second to measure from; it stands in the middle like a centre.
-    let steps = if points == Points::Corners && to > 1 { to - 1 } else { to } as f64;
-    let first = if points == Points::Corners && to > 1 { 0.0 } else { 0.5 };
-    let ratio = from as f64 / steps;
-    let stretch = ratio.max(1.0);
-    (0..to)
+fn taps(from: usize, places: Places, edges: Edges) -> Vec<Vec<(usize, f64)>> {
+    let stretch = places.step.max(1.0);
+    (0..places.count)
         .map(|k| {
-            let at = (k as f64 + first) * ratio - 0.5;
+            let at = places.first + k as f64 * places.step;
+            // Hair's breadths that rounding makes must not blur samples that lie on cells.
+            let at = if (at - at.round()).abs() < 1e-6 { at.round() } else { at };
             let reach = 2.0 * stretch;
             let (low, high) = ((at - reach).ceil() as i64, (at + reach).floor() as i64);
             let weighed: Vec<(usize, f64)> = (low..=high)

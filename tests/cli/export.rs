@@ -25,7 +25,7 @@ fn files_are_named_and_notes_go_elsewhere() {
 #[test]
 fn every_format_and_every_viewable_layer() {
     let place = grown();
-    for ending in ["png", "tif", "tiff", "exr", "asc", "r16", "raw", "r32"] {
+    for ending in ["png", "tif", "tiff", "exr", "asc", "r16", "raw", "r32", "glb", "obj", "stl"] {
         let said = place.run(&["export", "w", &format!("h.{ending}")]);
         assert_eq!(said.code, 0, "{ending}: {}", said.err);
     }
@@ -45,7 +45,10 @@ fn bad_requests_leave_nothing() {
         assert_eq!((said.code, said.out.as_str()), (2, ""), "{rest:?}");
         assert_eq!(place.files(), before, "{rest:?}");
     };
-    refused(&["h.gif"], "h.gif: no format has this ending; there are .png .tif .tiff .exr .asc .r16 .raw .r32");
+    refused(
+        &["h.gif"],
+        "h.gif: no format has this ending; there are .png .tif .tiff .exr .asc .r16 .raw .r32 .glb .obj .stl",
+    );
     refused(&["h.png", "--layer", "slop"], "--layer slop: no such layer (did you mean 'slope'?)");
     refused(&["h.png", "--engine", "unral"], "--engine unral: no such engine (did you mean 'unreal'?)");
     refused(

@@ -1,12 +1,10 @@
 //! Where the samples of a raster file lie on the map, and reading a layer there.
 //!
 //! Samples are centres of cells, or, for engines and tiles, vertices: the first and the last lie on the very edge, so
-//! that neighbouring tiles share theirs. Between cells the surface is Catmull-Rom's cubic; where samples lie further
-//! apart than cells, the same kernel is stretched over as many cells, so that what the samples cannot carry is averaged
-//! away instead of turning into jaggies (the band-limited resize of picture programs). The result never leaves the
-//! range of the source.
+//! that neighbouring tiles share theirs. Quantities are brought there by [`resample_at`] and never leave the range of
+//! the source.
 
-use crate::grid::{Edges, Field, Grid, for_each_row};
+use crate::grid::{Edges, Field, Grid, Places, for_each_row, resample_at};
 
 /// What a sample stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -107,36 +105,12 @@ impl Lattice {
             return field.clone();
         }
         let step = self.spacing_m / from.cell_m;
-        let [x0, y0] = self.first_m().map(|m| m / from.cell_m - 0.5);
-        let columns: Vec<Taps> = (0..self.width).map(|i| Taps::at(x0 + i as f64 * step, step)).collect();
-        let rows: Vec<Taps> = (0..self.height).map(|i| Taps::at(y0 + i as f64 * step, step)).collect();
-        let top = rows.first().map_or(0, |taps| taps.first);
-        let bottom = rows.last().map_or(0, |taps| taps.first + taps.weights.len() as isize);
-        let columns: Vec<Vec<(usize, f64)>> =
-            columns.iter().map(|taps| taps.iter().map(|(i, w)| (from.column(0, i), w)).collect()).collect();
-        // First along the rows, then along the columns.
-        let mut across = vec![0f32; (bottom - top) as usize * self.width];
-        for_each_row(&mut across, self.width, |i, out| {
-            let row = field.row(from.row(0, top + i as isize));
-            for (value, taps) in out.iter_mut().zip(&columns) {
-                *value = taps.iter().map(|&(x, w)| w * row[x] as f64).sum::<f64>() as f32;
-            }
-        });
+        let [x, y] = self.first_m().map(|m| m / from.cell_m - 0.5);
+        let places = |first: f64, count: usize| Places { first, step, count };
+        let mut data = resample_at(field, places(x, self.width), places(y, self.height));
         let (low, high) = field.range().unwrap_or((f32::MIN, f32::MAX));
-        let mut out = Field::filled(self.grid(), 0f32);
-        for_each_row(&mut out.data, self.width, |y, out| {
-            let mut sums = vec![0f64; self.width];
-            for (i, weight) in rows[y].iter() {
-                let row = &across[(i - top) as usize * self.width..][..self.width];
-                for (sum, &value) in sums.iter_mut().zip(row) {
-                    *sum += weight * value as f64;
-                }
-            }
-            for (value, sum) in out.iter_mut().zip(sums) {
-                *value = (sum as f32).clamp(low, high);
-            }
-        });
-        out
+        for_each_row(&mut data, self.width, |_, row| row.iter_mut().for_each(|v| *v = v.clamp(low, high)));
+        Field { grid: self.grid(), data }
     }
 
     /// An identity or a class at the samples: that of the cell a sample lies in.
@@ -149,43 +123,6 @@ impl Lattice {
             at.clamp(0.0, (count - 1) as f64) as usize
         };
         Field::from_fn(self.grid(), |x, y| field.at(cell(x0, x, from.width), cell(y0, y, from.height)))
-    }
-}
-
-/// The cells that make up a sample along one axis, from `first` on, which may lie beyond the rim.
-struct Taps {
-    first: isize,
-    weights: Vec<f64>,
-}
-
-impl Taps {
-    /// Around position `at` in cells, for samples `step` cells apart.
-    fn at(at: f64, step: f64) -> Self {
-        let stretch = step.max(1.0);
-        // Hair's breadths that rounding makes must not blur samples that lie on cells.
-        let at = if (at - at.round()).abs() < 1e-6 { at.round() } else { at };
-        let first = (at - 2.0 * stretch).ceil();
-        let count = ((at + 2.0 * stretch).floor() - first) as usize + 1;
-        let mut weights: Vec<f64> = (0..count).map(|i| catmull_rom((first + i as f64 - at) / stretch)).collect();
-        let sum: f64 = weights.iter().sum();
-        weights.iter_mut().for_each(|weight| *weight /= sum);
-        Self { first: first as isize, weights }
-    }
-
-    fn iter(&self) -> impl Iterator<Item = (isize, f64)> + '_ {
-        (self.first..).zip(self.weights.iter().copied())
-    }
-}
-
-/// Keys' cubic convolution kernel (1981) with a = -1/2.
-fn catmull_rom(t: f64) -> f64 {
-    let t = t.abs();
-    if t < 1.0 {
-        (1.5 * t - 2.5) * t * t + 1.0
-    } else if t < 2.0 {
-        ((-0.5 * t + 2.5) * t - 4.0) * t + 2.0
-    } else {
-        0.0
     }
 }
 

@@ -2,9 +2,10 @@
 //!
 //! The order of things: [`order`] checks what was asked without opening the world, [`place`] finds where the samples lie,
 //! [`names`] says which files there will be, [`draw`] makes the rasters, and [`sidecar`] says in JSON what the files
-//! cannot say themselves.
+//! cannot say themselves. Meshes go another way, [`mesh`].
 
 mod draw;
+mod mesh;
 mod names;
 mod order;
 mod place;
@@ -65,6 +66,9 @@ pub struct Exported {
 
 /// Writes the files; nothing is left of an export that fails.
 pub fn export(request: &ExportRequest) -> Result<Exported, JobError> {
+    if let Some(format) = mesh::format(&request.file) {
+        return mesh::export(request, format);
+    }
     let order = Order::check(request)?;
     let (world, provenance) = open_world(&request.world)?;
     order.check_world(&world)?;

@@ -2,6 +2,7 @@
 
 use crate::{
     export::{
+        MESH_FORMATS,
         engine::{Engine, WeightFiles, reads_as_tiles},
         raster::{Depth, FORMATS, Format, Layout},
     },
@@ -44,8 +45,13 @@ impl<'a> Order<'a> {
     pub fn check(request: &'a ExportRequest) -> Result<Self, JobError> {
         let file = request.file.display();
         let Some(format) = Format::of(&request.file) else {
-            let endings: Vec<String> =
-                FORMATS.iter().flat_map(|format| format.endings).map(|ending| format!(".{ending}")).collect();
+            let meshes = MESH_FORMATS.iter().map(|(ending, _)| ending);
+            let endings: Vec<String> = FORMATS
+                .iter()
+                .flat_map(|format| format.endings)
+                .chain(meshes)
+                .map(|ending| format!(".{ending}"))
+                .collect();
             return refuse(format!("{file}: no format has this ending; there are {}", endings.join(" ")));
         };
         let content = content(&request.layer)?;

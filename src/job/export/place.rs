@@ -113,7 +113,8 @@ fn check_side(side: usize, tiles: usize, asked: Option<usize>) -> Result<(), Job
     refuse(format!("{what}{side} samples a side{all} are too many; at most {MOST_SIDE} are"))
 }
 
-fn check_window(window: Window, world: &World) -> Result<(), JobError> {
+/// Refuses a window that does not lie on the map.
+pub fn check_window(window: Window, world: &World) -> Result<(), JobError> {
     let [wide_m, high_m] = world.grid.extent_m();
     let Window { x_m, y_m, size_m } = window;
     let shown = format!("--window {},{},{}", x_m / 1000.0, y_m / 1000.0, size_m / 1000.0);

@@ -291,3 +291,23 @@ fn the_map_programs_gray_is_8_bits() {
         assert!(if land { pixel.0[0] >= 48 } else { pixel.0[0] <= 34 }, "{x} {y} {}", pixel.0[0]);
     }
 }
+
+#[test]
+fn meshes_of_the_map_and_of_a_part() {
+    let place = Place::of(64, 32);
+    export(&place.request("m.stl")).unwrap();
+    // Binary STL: 84 bytes and 50 a triangle.
+    let triangles = |name: &str| (fs::read(place.path(name)).unwrap().len() - 84) / 50;
+    let window = Some(square());
+    export(&ExportRequest { window, size: Some(9), ..place.request("part.stl") }).unwrap();
+    assert!(triangles("m.stl") > 2 * 64 * 32 && triangles("part.stl") < 2 * 2 * 8 * 8 + 200);
+    let refused = [
+        ExportRequest { tiles: Some(2), ..place.request("a.glb") },
+        ExportRequest { layer: "slope".into(), ..place.request("a.obj") },
+        ExportRequest { size: Some(10_000), ..place.request("a.stl") },
+    ];
+    for request in refused {
+        assert!(export(&request).unwrap_err().refused());
+    }
+    assert_eq!(place.names(), ["m.stl", "part.stl"]);
+}
