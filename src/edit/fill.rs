@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn holes_stay_between_their_neighbours_and_heights_as_they_were() {
         let rough = |x: usize, y: usize| ((x * 37 + y * 101) % 64) as f32;
-        let hole = |x: usize, y: usize| x < 50 && (x * y + x) % 5 != 0;
+        let hole = |x: usize, y: usize| x < 50 && !(x * y + x).is_multiple_of(5);
         let filled = punched(101, 57, rough, hole);
         for (i, &v) in filled.iter().enumerate() {
             assert!((0.0..=63.0).contains(&v));

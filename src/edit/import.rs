@@ -36,7 +36,7 @@ pub struct ImportParams {
     /// Order of the bytes in a raw file.
     #[schemars(extend("x-effect" = "little is usual; big is what old Macintoshes wrote"))]
     pub endian: Endian,
-    /// Height of black (of 0 in a file of fractions); 0 if neither given nor stated by the file.
+    /// Height of black (of 0 in a file of fractions); 0, or 2000 m below a white under the sea, if neither given nor stated by the file.
     #[schemars(range(min = -12000.0, max = 20000.0), extend("x-unit" = "m", "x-effect" = "higher lowlands"))]
     pub low_m: Option<f64>,
     /// Height of white (of 1 in a file of fractions); 2000 m above black if neither given nor stated by the file.
@@ -168,7 +168,10 @@ impl ImportParams {
             return Ok(Scale { black: 0.0, low_m: 0.0, per_value_m: 1.0, step_m: header.sample.step() });
         }
         let (black, white) = header.sample.ends();
-        let low_m = self.low_m.unwrap_or(0.0);
+        let low_m = self.low_m.unwrap_or(match self.high_m {
+            Some(high_m) if high_m <= 0.0 => high_m - WHITE_M,
+            _ => 0.0,
+        });
         let high_m = self.high_m.unwrap_or(low_m + WHITE_M);
         if low_m >= high_m {
             return Err(Problem::Levels(low_m, high_m));

@@ -129,6 +129,10 @@ fn fractions_of_one_can_be_given_heights() {
     let raw: Vec<u8> = [0.0f32, 0.25, 0.5, 1.0].iter().flat_map(|v| v.to_le_bytes()).collect();
     let map = params.read_bytes("a.r32", raw).unwrap();
     assert_eq!(map.heights, [100.0, 150.0, 200.0, 300.0]);
+    // A sea floor that is only given its top.
+    let params = ImportParams { high_m: Some(-200.0), ..Default::default() };
+    let map = params.read_bytes("a.r32", [0.0f32, 1.0, 0.5, 1.0].iter().flat_map(|v| v.to_le_bytes()).collect());
+    assert_eq!(map.unwrap().heights, [-2200.0, -200.0, -1200.0, -200.0]);
 }
 
 #[test]

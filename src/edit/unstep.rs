@@ -89,9 +89,9 @@ mod tests {
         let mut smooth = stored.clone();
         unstep(&mut smooth, w, 0.5 * step as f32);
         let rms = |errors: &mut dyn Iterator<Item = f64>| {
-            let (mut sum, mut count) = (0.0, 0.0);
+            let (mut sum, mut count) = (0.0f64, 0.0);
             errors.for_each(|e| (sum, count) = (sum + e * e, count + 1.0));
-            (sum / count as f64).sqrt()
+            (sum / count).sqrt()
         };
         let height = |heights: &[f32]| rms(&mut heights.iter().zip(&truth).map(|(a, b)| *a as f64 - b));
         let error = |heights: &[f32], i: usize| heights[i] as f64 - truth[i];
