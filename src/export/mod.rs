@@ -22,7 +22,7 @@ pub mod video;
 mod weights;
 
 pub use height_png::{HeightRange, write_height_png, write_height_png_within};
-pub use mesh::{MESH_SIDES, MeshFormat, MeshOptions, write_glb, write_mesh, write_obj, write_stl};
+pub use mesh::{MESH_FORMATS, MESH_SIDES, MeshFormat, MeshOptions, write_glb, write_mesh, write_obj, write_stl};
 pub use normals::{Green, encoded as encoded_normal, normals};
 pub use staged::Staged;
 pub use weights::{MATERIALS, WeightRules};

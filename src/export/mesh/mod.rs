@@ -57,7 +57,11 @@ impl Default for MeshOptions {
     }
 }
 
-/// The formats of meshes.
+/// The formats of meshes, by their endings.
+pub const MESH_FORMATS: [(&str, MeshFormat); 3] =
+    [("glb", MeshFormat::Glb), ("obj", MeshFormat::Obj), ("stl", MeshFormat::Stl)];
+
+/// A format of meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshFormat {
     /// Binary glTF 2.0.
