@@ -15,7 +15,7 @@ pub struct Coast {
 impl Coast {
     /// The coast of `z` at `sea`.
     pub fn new(z: &Field<f32>, sea: f32) -> Self {
-        let line_px = Field::from_fn(z.grid, |x, y| distance(z, sea, x, y));
+        let line_px = Field::from_fn(z.grid, |x, y| distance::<2>(z, sea, x, y));
         let land = Field::from_fn(z.grid, |x, y| land_share(z.at(x, y) > sea, line_px.at(x, y)));
         let offshore = nearest_feature(z.grid, |i| z.data[i] > sea).distance_m;
         let per_m = (1.0 / z.grid.cell_m) as f32;
@@ -30,11 +30,12 @@ pub fn land_share(above: bool, line_px: f32) -> f32 {
     (if above { 0.5 + beyond } else { 0.5 - beyond }).clamp(0.0, 1.0)
 }
 
-/// Distance from a pixel's centre to the contour in the 4 x 4 squares around it, pixels; infinite where there is none.
-pub fn distance(z: &Field<f32>, sea: f32, x: usize, y: usize) -> f32 {
+/// Distance from a pixel's centre to the contour in the squares up to `REACH` around it, pixels; infinite where there is
+/// none.
+pub fn distance<const REACH: usize>(z: &Field<f32>, sea: f32, x: usize, y: usize) -> f32 {
     let (w, h) = (z.grid.width, z.grid.height);
-    let (left, right) = (x.saturating_sub(2), (x + 2).min(w - 1));
-    let (top, bottom) = (y.saturating_sub(2), (y + 2).min(h - 1));
+    let (left, right) = (x.saturating_sub(REACH), (x + REACH).min(w - 1));
+    let (top, bottom) = (y.saturating_sub(REACH), (y + REACH).min(h - 1));
     let above = z.at(x, y) > sea;
     if (top..=bottom).all(|j| z.row(j)[left..=right].iter().all(|&v| (v > sea) == above)) {
         return f32::INFINITY;

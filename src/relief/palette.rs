@@ -10,9 +10,15 @@ pub fn hex(code: u32) -> Rgb {
 }
 
 /// `a` to `b`.
-#[inline]
+#[inline(always)]
 pub fn mix(a: Rgb, b: Rgb, t: f32) -> Rgb {
-    [0, 1, 2].map(|i| a[i] + (b[i] - a[i]) * t)
+    each(|i| a[i] + (b[i] - a[i]) * t)
+}
+
+/// A value for red, green, and blue. Unlike `map` of an array it is always inlined, which pixels need.
+#[inline(always)]
+pub fn each<T>(f: impl Fn(usize) -> T) -> [T; 3] {
+    [f(0), f(1), f(2)]
 }
 
 fn to_linear(v: f64) -> f64 {
@@ -39,9 +45,9 @@ impl Encoder {
     }
 
     /// One colour.
-    #[inline]
+    #[inline(always)]
     pub fn bytes(&self, rgb: Rgb) -> [u8; 3] {
-        rgb.map(|v| self.table[(v.clamp(0.0, 1.0) * (Self::SIZE - 1) as f32 + 0.5) as usize])
+        each(|c| self.table[usize::from((rgb[c].clamp(0.0, 1.0) * (Self::SIZE - 1) as f32 + 0.5) as u16)])
     }
 }
 
@@ -110,11 +116,16 @@ impl Ramp {
         Self::new(&codes.iter().enumerate().map(stop).collect::<Vec<_>>())
     }
 
+    /// The values at its ends.
+    pub fn ends(&self) -> [f32; 2] {
+        [self.low, self.low + (Self::SIZE - 1) as f32 / self.per_value]
+    }
+
     /// The colour of a value.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, value: f32) -> Rgb {
         let at = ((value - self.low) * self.per_value).clamp(0.0, (Self::SIZE - 1) as f32);
-        let i = (at as usize).min(Self::SIZE - 2);
+        let i = usize::from(at as u16).min(Self::SIZE - 2);
         mix(self.colours[i], self.colours[i + 1], at - i as f32)
     }
 }

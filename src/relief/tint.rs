@@ -8,7 +8,7 @@ use super::{
     Options,
     coast::Coast,
     frame::Frame,
-    palette::{Ramp, Rgb, hex, mix},
+    palette::{Ramp, Rgb, each, hex, mix},
     shade::shade,
 };
 use crate::grid::Field;
@@ -77,6 +77,11 @@ impl Scene {
         Self { sea_m, range_m: [low, high], land: scaled(&LAND, anchor, up), sea: scaled(&SEA, sea_m, down) }
     }
 
+    /// Highest and lowest height that colours tell apart, m.
+    pub fn reach_m(&self) -> [f32; 2] {
+        [self.land.ends()[1], self.sea.ends()[0]]
+    }
+
     /// The colour of dry land at a height.
     #[inline]
     pub fn land(&self, height_m: f32) -> Rgb {
@@ -140,32 +145,37 @@ impl Brush {
         0.40 * libm::expf(-offshore_px / (4.5 * unit))
     }
 
+    /// Whether the coast's line touches a pixel.
+    #[inline]
+    pub fn on_line(&self, line_px: f32) -> bool {
+        line_px < self.half_line_px
+    }
+
     /// A pixel in linear light.
     #[inline(always)]
     pub fn pixel(&self, scene: &Scene, place: Place, line_px: f32, halo: impl Fn() -> f32) -> Rgb {
         let Place { height_m, tone, land } = place;
         let sea = scene.sea_m as f32;
-        let wet = || mix(lit_floor(scene.sea(height_m.min(sea)), tone * 0.5), self.glow, halo());
-        let dry = || lit(scene.land(height_m.max(sea)), tone);
-        let ground = match land {
-            0.0 => wet(),
-            1.0 => dry(),
-            share => mix(wet(), dry(), share),
+        let ground = if land >= 1.0 {
+            lit(scene.land(height_m.max(sea)), tone)
+        } else {
+            let wet = mix(lit_floor(scene.sea(height_m.min(sea)), tone * 0.5), self.glow, halo());
+            if land > 0.0 { mix(wet, lit(scene.land(height_m.max(sea)), tone), land) } else { wet }
         };
         mix(ground, self.ink, 0.62 * (self.half_line_px - line_px).clamp(0.0, 1.0))
     }
 }
 
 /// A colour under light: shadows cool, light warm, as on painted maps.
-#[inline]
+#[inline(always)]
 pub fn lit(colour: Rgb, tone: f32) -> Rgb {
     const SHADOW: Rgb = [0.10, 0.12, 0.22];
     const WARM: Rgb = [1.0, 0.97, 0.88];
     if tone < 0.0 {
-        [0, 1, 2].map(|c| colour[c] * (1.0 + tone * (1.0 - SHADOW[c])))
+        each(|c| colour[c] * (1.0 + tone * (1.0 - SHADOW[c])))
     } else {
         // More light on the same colour first, so that it keeps its strength; a little glare on top.
-        [0, 1, 2].map(|c| {
+        each(|c| {
             let bright = colour[c] * (1.0 + 0.75 * tone * WARM[c]);
             bright + (WARM[c] - bright).max(0.0) * tone * 0.20
         })
@@ -173,11 +183,11 @@ pub fn lit(colour: Rgb, tone: f32) -> Rgb {
 }
 
 /// A sea floor under light: all of it through water.
-#[inline]
+#[inline(always)]
 fn lit_floor(colour: Rgb, tone: f32) -> Rgb {
     const DEEP: Rgb = [0.25, 0.30, 0.42];
     let gain = |c: usize| if tone < 0.0 { 1.0 + tone * (1.0 - DEEP[c]) } else { 1.0 + 0.8 * tone };
-    [0, 1, 2].map(|c| (colour[c] * gain(c)).min(1.0))
+    each(|c| (colour[c] * gain(c)).min(1.0))
 }
 
 #[cfg(test)]

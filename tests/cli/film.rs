@@ -128,7 +128,7 @@ fn the_last_picture_is_the_finished_world() {
             "--video",
             &name,
             "--video-size",
-            "240x136",
+            "264x136",
             "--fps",
             "25",
             "--view",
@@ -139,7 +139,7 @@ fn the_last_picture_is_the_finished_world() {
         assert_eq!(std::fs::read_dir(place.path(folder)).unwrap().count(), PICTURES);
         let (world, _) = store::read(&place.path(world).join("world.zarr")).unwrap();
         let view = if view == "relief" { View::Relief } else { View::Layer(upthrust::world::Layer::Slope) };
-        let options = Options { size: [240, 136], view, range_m: [-9000.0, 9000.0], title: None };
+        let options = Options { size: [264, 136], view, range_m: [-9000.0, 9000.0], title: None };
         let mut animation = Animation::new(world.grid, &options);
         let shot = animation.shot(&world).unwrap();
         let mut want = vec![0; animation.bytes()];
@@ -148,7 +148,7 @@ fn the_last_picture_is_the_finished_world() {
         let [width, height] = animation.map_size();
         assert_eq!([width, height], [204, 136]);
         let rows =
-            |pixels: &[u8]| -> Vec<u8> { pixels.chunks(240 * 3).flat_map(|row| row[..width * 3].to_vec()).collect() };
+            |pixels: &[u8]| -> Vec<u8> { pixels.chunks(264 * 3).flat_map(|row| row[..width * 3].to_vec()).collect() };
         assert!(rows(last.as_raw()) == rows(&want), "{folder}");
     }
 }
@@ -223,13 +223,13 @@ fn ctrl_c_ends_ffmpeg_and_leaves_nothing() {
     let slow = ["--size", "3000", "--set", "rmp_peak.iterations=5000", "--out", "w", "--video", "f.mp4"];
     let arguments = [&["grow", "rmp-peak", "--set", "rmp_peak.film_seconds=1"], &slow[..]].concat();
     let mut child = place.command(&arguments).stderr(std::process::Stdio::null()).spawn().unwrap();
-    let here = place.folder.path().canonicalize().unwrap();
+    let (own, here) = (child.id().to_string(), place.folder.path().canonicalize().unwrap());
     // Processes of this folder that are not the program itself.
     let others = || {
         let processes = std::fs::read_dir("/proc").unwrap().flatten();
         let in_here =
             processes.filter(|entry| std::fs::read_link(entry.path().join("cwd")).is_ok_and(|cwd| cwd == here));
-        in_here.filter(|entry| entry.file_name().to_string_lossy() != child.id().to_string()).count()
+        in_here.filter(|entry| entry.file_name().to_string_lossy() != own).count()
     };
     // The trial that finds the range comes first; then ffmpeg is started.
     let began = std::time::Instant::now();
@@ -317,7 +317,7 @@ fn what_cannot_be_filmed_is_refused_in_one_line() {
     assert!(said.err.contains("if 'short' is the recipe, write it before --video"), "{}", said.err);
     place.write("both.toml", format!("{RECIPE}film_yr_per_s = 5\n"));
     let said = place.run(&["grow", "both.toml"]);
-    let line = "error: both.toml:11: 'film_yr_per_s' and 'film_seconds' both say how long the stage takes in a film; keep one\n";
+    let line = "error: both.toml:12: 'film_yr_per_s' and 'film_seconds' both say how long the stage takes in a film; keep one\n";
     assert_eq!((said.err.as_str(), said.code), (line, 2));
 }
 

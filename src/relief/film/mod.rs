@@ -14,6 +14,7 @@ mod sheet;
 mod shore;
 mod shot;
 mod soften;
+mod tints;
 
 pub use shot::Shot;
 
@@ -32,6 +33,7 @@ use crate::{
 use resample::Resampler;
 use sheet::Sheet;
 use shore::Shore;
+use tints::Tints;
 
 /// What all pictures of a film share.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +72,7 @@ pub struct Animation {
     encoder: Encoder,
     lamps: Lamps,
     brush: Brush,
+    tints: Tints,
     unit: f32,
     heights: Field<f32>,
     shore: Shore,
@@ -89,18 +92,21 @@ impl Animation {
             View::Relief => None,
             View::Layer(layer) => Colours::fixed(layer),
         };
+        let (encoder, brush) = (Encoder::new(), Brush::new(unit_of(&map)));
+        let tints = Tints::new(&scene, &brush, &encoder);
         let legend = layers::fixed_legend(&options.view, &scene);
         Self {
             map,
             size: options.size,
             view: options.view,
             resampler: Resampler::new(grid, map),
+            tints,
             scene,
             colours,
             sheet: Sheet::new(options.size, [map_w, map_h], options.title.as_deref(), &legend),
-            encoder: Encoder::new(),
+            encoder,
             lamps: Lamps::new(),
-            brush: Brush::new(unit_of(&map)),
+            brush,
             unit: unit_of(&map),
             heights: Field::filled(map, 0.0),
             shore: Shore::new(map),

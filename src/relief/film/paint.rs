@@ -38,6 +38,7 @@ struct Room {
     form: [Vec<f32>; 3],
     around: Vec<f32>,
     tone: Vec<f32>,
+    tints: Vec<u32>,
 }
 
 impl Animation {
@@ -70,7 +71,7 @@ impl Animation {
         let this = &*self;
         let room = || {
             let row = || vec![0.0; map.width];
-            Room { form: [row(), row(), row()], around: row(), tone: row() }
+            Room { form: [row(), row(), row()], around: row(), tone: row(), tints: vec![0; map.width] }
         };
         let rows = picture.par_chunks_exact_mut(this.size[0] * 3).take(map.height).enumerate();
         rows.for_each_init(room, |room, (y, out)| {
@@ -78,7 +79,7 @@ impl Animation {
             this.light(&light, y, room);
             match &values {
                 Some(values) => this.layer_row(values, sea_m, y, room, out),
-                None => this.relief_row(sea_m, y, &room.tone, out),
+                None => this.relief_row(sea_m, y, room, out),
             }
         });
     }
@@ -93,7 +94,7 @@ impl Animation {
         light.around.row(y, &mut room.around);
         let per = (0.5 / grid.cell_m) as f32 * light.factor;
         let over = light.factor / (super::super::shade::sigma_px(&self.heights, 2) * grid.cell_m) as f32;
-        let Room { form: [north, here, south], around, tone } = room;
+        let Room { form: [north, here, south], around, tone, .. } = room;
         let z = self.heights.row(y);
         // The rim has its own neighbours; the rest is one plain loop over slices of one length.
         if last > 1 {
@@ -113,15 +114,22 @@ impl Animation {
         }
     }
 
-    fn relief_row(&self, sea_m: f32, y: usize, tone: &[f32], out: &mut [u8]) {
-        let brush = &self.brush;
+    /// A row of the relief: most pixels are looked up by height and light, those on the coast and in its glow mixed.
+    fn relief_row(&self, sea_m: f32, y: usize, room: &mut Room, out: &mut [u8]) {
+        let Room { tone, tints, .. } = room;
+        let heights = self.heights.row(y);
+        self.tints.places(heights, sea_m, tone, tints);
         let begin = y * self.map.width;
-        for (x, (pixel, &height_m)) in out.chunks_exact_mut(3).zip(self.heights.row(y)).enumerate() {
+        for (x, pixel) in out.chunks_exact_mut(3).enumerate() {
             let line_px = self.shore.line_px[begin + x];
+            if self.shore.open(begin + x) && line_px > 1.0 && !self.brush.on_line(line_px) {
+                pixel.copy_from_slice(&self.tints.at(tints[x]));
+                continue;
+            }
             // The scene is over a sea at zero.
-            let height_m = height_m - sea_m;
+            let height_m = heights[x] - sea_m;
             let place = Place { height_m, tone: tone[x], land: coast::land_share(height_m > 0.0, line_px) };
-            let colour = brush.pixel(&self.scene, place, line_px, || self.shore.glow(begin + x));
+            let colour = self.brush.pixel(&self.scene, place, line_px, || self.shore.glow(begin + x));
             pixel.copy_from_slice(&self.encoder.bytes(colour));
         }
     }

@@ -122,6 +122,8 @@ mod tests {
             }
         }
         let ripples = small.sum(&[&Field::from_fn(from, |x, _| if x % 2 == 0 { 100.0 } else { -100.0 })]);
-        assert!(ripples.data.iter().all(|v| v.abs() < 12.0));
+        let most = (3..27).map(|x| ripples.at(x, 12).abs()).fold(0.0, f32::max);
+        // Worked out by hand for this kernel: 1.2 of 100.
+        assert!(most < 2.0, "{most}");
     }
 }

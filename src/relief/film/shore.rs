@@ -1,4 +1,5 @@
-//! The coast of a picture: the same line and the same glow as `coast` finds, only where there are any.
+//! The coast of a picture: the same line and the same glow as `coast` finds, only where there are any. The line is looked
+//! for no farther than it is wide.
 
 use rayon::prelude::*;
 
@@ -8,11 +9,15 @@ use crate::grid::{Field, Grid, for_each_row};
 /// The glow ends where it adds less than a third of a step of a byte.
 const REACH: f32 = 36.0;
 
+/// Unit of a picture from which on a line reaches into the pixel after the next: half its width, by `Brush`, is
+/// 0.5 + 0.45 units, and a twentieth of a pixel is nothing.
+const BROAD: f32 = 1.25;
+
 /// Where land ends, at each pixel.
 pub struct Shore {
     /// Whether a pixel is land.
     land: Vec<u8>,
-    /// Distance to the coast where it is within two pixels, else infinite, pixels.
+    /// Distance to the coast where it is near, else infinite, pixels.
     pub line_px: Vec<f32>,
     /// Squared distance from the nearest land, pixels; at most that of the reach.
     pub offshore2: Vec<u16>,
@@ -21,6 +26,8 @@ pub struct Shore {
     reach: usize,
     /// Glow by squared distance.
     glow: Vec<f32>,
+    /// Whether lines are broad enough to be looked for two pixels away.
+    broad: bool,
 }
 
 impl Shore {
@@ -39,7 +46,14 @@ impl Shore {
             rows: vec![0; cells],
             reach,
             glow,
+            broad: unit > BROAD,
         }
+    }
+
+    /// Whether a pixel is out of the glow.
+    #[inline]
+    pub fn open(&self, index: usize) -> bool {
+        self.glow[self.offshore2[index] as usize] == 0.0
     }
 
     /// How strongly the sea glows at a pixel.
@@ -55,7 +69,10 @@ impl Shore {
             row.iter_mut().zip(z.row(y)).for_each(|(land, &h)| *land = u8::from(h > sea));
         });
         let land = &self.land;
-        for_each_row(&mut self.line_px, width, |y, row| line(z, sea, land, y, row));
+        match self.broad {
+            true => for_each_row(&mut self.line_px, width, |y, row| line::<2>(z, sea, land, y, row)),
+            false => for_each_row(&mut self.line_px, width, |y, row| line::<1>(z, sea, land, y, row)),
+        }
         self.sweep(width);
         let (rows, reach) = (&self.rows, self.reach);
         let room = || vec![0u16; width + 2 * reach];
@@ -82,19 +99,19 @@ impl Shore {
 }
 
 /// Distances to the contour along a row. Most pixels see land or sea alone, which counting tells quickly.
-fn line(z: &Field<f32>, sea: f32, land: &[u8], y: usize, row: &mut [f32]) {
+fn line<const REACH: usize>(z: &Field<f32>, sea: f32, land: &[u8], y: usize, row: &mut [f32]) {
     let (w, h) = (z.grid.width, z.grid.height);
-    let (top, bottom) = (y.saturating_sub(2), (y + 2).min(h - 1));
+    let (top, bottom) = (y.saturating_sub(REACH), (y + REACH).min(h - 1));
     let mut counts = vec![0u8; w];
     for j in top..=bottom {
         counts.iter_mut().zip(&land[j * w..][..w]).for_each(|(count, land)| *count += land);
     }
     let tall = (bottom - top + 1) as u8;
     for (x, out) in row.iter_mut().enumerate() {
-        let seen = &counts[x.saturating_sub(2)..(x + 3).min(w)];
+        let seen = &counts[x.saturating_sub(REACH)..(x + REACH + 1).min(w)];
         let sum: u8 = seen.iter().sum();
         let plain = sum == 0 || sum == tall * seen.len() as u8;
-        *out = if plain { f32::INFINITY } else { distance(z, sea, x, y) };
+        *out = if plain { f32::INFINITY } else { distance::<REACH>(z, sea, x, y) };
     }
 }
 
@@ -136,7 +153,10 @@ mod tests {
         let coast = Coast::new(&z, 0.0);
         let mut shore = Shore::new(grid);
         shore.find(&z, 0.0);
-        assert!(shore.line_px == coast.line_px.data);
+        let brush = Brush::new(unit_of(&grid));
+        for (near, far) in shore.line_px.iter().zip(&coast.line_px.data) {
+            assert!(near == far || !brush.on_line(*far) && !brush.on_line(*near), "{near} {far}");
+        }
         for i in 0..grid.cells() {
             let want = Brush::halo(coast.offshore_px.data[i], unit_of(&grid));
             // 0.4·exp(−36/4.5).
