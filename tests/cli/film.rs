@@ -221,7 +221,9 @@ fn ctrl_c_ends_ffmpeg_and_leaves_nothing() {
     }
     let place = Place::new();
     let slow = ["--size", "3000", "--set", "rmp_peak.iterations=5000", "--out", "w", "--video", "f.mp4"];
-    let arguments = [&["grow", "rmp-peak", "--set", "rmp_peak.film_seconds=1"], &slow[..]].concat();
+    // The peak alone, so that there is nothing yet to be kept.
+    let set = ["grow", "rmp-peak", "--set", "rmp_peak.film_seconds=1", "--set", "plain.enabled=false"];
+    let arguments = [&set[..], &slow[..]].concat();
     let mut child = place.command(&arguments).stderr(std::process::Stdio::null()).spawn().unwrap();
     let (own, here) = (child.id().to_string(), place.folder.path().canonicalize().unwrap());
     // Processes of this folder that are not the program itself.
@@ -237,7 +239,7 @@ fn ctrl_c_ends_ffmpeg_and_leaves_nothing() {
         assert!(began.elapsed().as_secs() < 300, "ffmpeg was never started");
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
-    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let sent = Command::new("kill").args(["-INT", &own]).status().unwrap();
     assert!(sent.success());
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert_eq!(others(), 0);

@@ -44,7 +44,7 @@ fn ctrl_c_before_the_first_step_leaves_nothing() {
     let place = Place::new();
     let mut arguments = [&LONG[..], &["w"]].concat();
     // The peak alone: one step, which is not begun or not done.
-    arguments.extend(["--set", "fbm.enabled=false"]);
+    arguments.extend(["--set", "plain.enabled=false"]);
     let said = interrupted(&place, &arguments, None);
     assert_eq!(said.lines().last(), Some("stopped; nothing was written"));
     assert!(place.files().is_empty(), "{:?}", place.files());
