@@ -46,7 +46,7 @@ const CASES: &[Case] = &[
     case("rmp_ridge", "mask = 'slope'\n"),
     case("rmp_graph", "blend = 'min'\n"),
     case("import", ""),
-    case("import", "blend = 'max'\nsmooth = 1.0\nhigh_m = 900.0\nmask = 'slope > 10'\n"),
+    case("import", "blend = 'max'\nsmooth = 1.0\nhigh_m = 3000.0\nmask = 'height > 100'\n"),
 ];
 
 impl Case {
