@@ -1,4 +1,4 @@
-//! What is fed with hostile bytes: by the fuzz targets without end, by `tests/contract` a few hundred times.
+//! What is fed with hostile bytes: by the fuzz targets without end, by `tests/hostile` a few hundred times.
 //!
 //! An entry point panics where a promise is broken: an error of more than one line, a height that is no number.
 

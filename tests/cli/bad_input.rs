@@ -119,7 +119,12 @@ fn worlds() {
     let what = "--view slop: neither 'relief' nor a layer (did you mean 'slope'?)";
     refused(&place, &["render", "no", "a.png", "--view", "slop"], what, 2);
     refused(&place, &["render", "no", "a.png"], "no: there is no such world", 2);
-    refused(&place, &["render", "no", "a.gif"], "a.gif: pictures are written as PNG; give the name the ending .png", 2);
+    refused(
+        &place,
+        &["render", "no", "a.gif"],
+        "a.gif: pictures are written as PNG or JPEG; give the name the ending .png or .jpg",
+        2,
+    );
     #[cfg(not(feature = "app"))]
     refused(&place, &["app"], "this build lacks the desktop application; build it with --features app", 2);
     let named = "the following required arguments were not provided: <WORLD>; see 'upthrust --help'";

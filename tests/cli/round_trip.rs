@@ -1,0 +1,54 @@
+//! What is exported comes back the same within the format's step, whatever the format.
+
+use upthrust::{grid::Field, world::store};
+
+use super::Place;
+
+fn heights(place: &Place, world: &str) -> Field<f32> {
+    store::read(&place.path(world)).unwrap().0.height()
+}
+
+#[test]
+fn import_undoes_export() {
+    let place = Place::new();
+    assert_eq!(place.run(&["grow", "fbm-smooth", "--size", "96x64", "--quiet", "--out", "w"]).code, 0);
+    let truth = heights(&place, "w");
+    for (file, flags) in [
+        ("h.png", &[][..]),
+        ("h.r16", &[]),
+        ("h.r16", &["--big-endian"]),
+        ("h.r32", &[]),
+        ("h.exr", &[]),
+        ("h.asc", &[]),
+        ("h.tif", &[]),
+        ("h16.tif", &["--bits", "16"]),
+    ] {
+        let said = place.run(&[&["export", "w", file, "--force"], flags].concat());
+        assert_eq!(said.code, 0, "{file}: {}", said.err);
+        // Whole numbers need the metres that black and white stand for; the file beside says them.
+        let facts: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(place.path(&format!("{file}.json"))).unwrap()).unwrap();
+        let ends = [&facts["black_m"], &facts["white_m"]].map(serde_json::Value::as_f64);
+        let mut recipe = format!("[world]\nextent_km = 200.0\n[[stage]]\nkind = \"import\"\npath = \"{file}\"\n");
+        let step_m = match ends {
+            [Some(black_m), Some(white_m)] => {
+                recipe += &format!("low_m = {black_m:?}\nhigh_m = {white_m:?}\n");
+                (white_m - black_m) / 65535.0
+            }
+            _ => 0.0,
+        };
+        let bare = file.ends_with("r16") || file.ends_with("r32");
+        recipe += if bare { "size = [96, 64]\n" } else { "" };
+        recipe += if flags.contains(&"--big-endian") { "endian = \"big\"\n" } else { "" };
+        place.write("back.toml", recipe);
+        let said = place.run(&["grow", "back.toml", "--out", "back", "--force"]);
+        assert_eq!(said.code, 0, "{file}: {}", said.err);
+        let back = heights(&place, "back");
+        assert_eq!((back.grid.width, back.grid.height), (96, 64), "{file}");
+        // Half a step, and what f32 rounds at a few thousand metres.
+        let most = truth.data.iter().zip(&back.data).map(|(a, b)| (a - b).abs() as f64).fold(0.0, f64::max);
+        let allowed = if step_m > 0.0 { 0.5 * step_m + 5e-4 } else { 0.0 };
+        assert!(most <= allowed, "{file} {flags:?}: off by {most} m, a step is {step_m} m");
+        assert!((step_m > 0.0) == (file == "h.png" || file.ends_with("16") || file == "h16.tif"), "{file}");
+    }
+}
