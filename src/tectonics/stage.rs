@@ -27,6 +27,10 @@ use super::{
     warp::Warp,
 };
 
+/// What is written anew whenever the stage shows itself; bedrock joins what the stage found.
+const SHOWN: [Layer; 6] =
+    [Layer::Uplift, Layer::PlateId, Layer::CrustKind, Layer::CrustAge, Layer::CrustThickness, Layer::BoundaryKind];
+
 /// Share of the square that the thesis's block of plates fills.
 const THESIS_BLOCK: f64 = 0.9;
 
@@ -275,6 +279,10 @@ impl Geologic {
         let map_m = run.domain.map_m;
         let sea_m =
             params.land_share.map_or(world.sea_level_m, |share| surface.sea_level_for(map_m, &self.warp, share));
+        // What an earlier frame left makes room first; nothing from here on can fail.
+        for layer in SHOWN {
+            world.remove_layer(layer);
+        }
         for (layer, field) in surface.read(world.grid, &self.warp, params, sea_m, context.key.named("detail")) {
             match layer {
                 Layer::Bedrock => ground.put(&field, world, context),

@@ -19,7 +19,7 @@ use super::{
 use crate::export::ExportError;
 
 /// Pictures that may wait to be written.
-const WAITING: usize = 3;
+const WAITING: usize = 2;
 
 /// How a film is written.
 #[derive(Clone, Debug, PartialEq)]

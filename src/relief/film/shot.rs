@@ -43,16 +43,22 @@ impl Shot {
             View::Relief => None,
         };
         let sea_m = world.sea_level_m as f32;
-        let [fine, middle, around] = [0, 1, 2].map(|i| soften(&height, shade::sigma_px(&height, i)));
+        let copy = |i: usize| soften(&height, shade::sigma_px(&height, i));
+        let shares = shade::SCALES.map(|(_, share)| share as f32);
+        let fine = copy(0);
         let has_land = height.data.iter().any(|&h| h > sea_m);
         let exaggeration = shade::typical_exaggeration(&fine, |h| h > sea_m || !has_land) as f32;
-        let shares = shade::SCALES.map(|(_, share)| share as f32);
         let mut form = fine.data;
-        crate::grid::for_each_row(&mut form, map.width, |y, row| {
-            for ((form, middle), around) in row.iter_mut().zip(middle.row(y)).zip(around.row(y)) {
-                *form = *form * shares[0] + middle * shares[1] + around * shares[2];
-            }
-        });
+        form.iter_mut().for_each(|form| *form *= shares[0]);
+        let mut add = |copy: &Field<f32>, share: f32| {
+            crate::grid::for_each_row(&mut form, map.width, |y, row| {
+                row.iter_mut().zip(copy.row(y)).for_each(|(form, v)| *form += v * share);
+            });
+        };
+        // One after the other, so that no more than one of them takes room.
+        add(&copy(1), shares[1]);
+        let around = copy(2);
+        add(&around, shares[2]);
         Ok(Self { height, form, around: around.data, values, sea_m, exaggeration, time_yr: world.time_yr })
     }
 
