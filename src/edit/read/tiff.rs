@@ -3,6 +3,8 @@
 //! Without GeoTIFF's tags, whole numbers from 0 are levels between black and white; with them, or where they are signed,
 //! they are metres.
 
+use std::io::SeekFrom;
+
 use ::tiff::{
     ColorType, TiffError,
     decoder::{Decoder, DecodingResult, Limits},
@@ -87,11 +89,30 @@ pub(super) fn heights(input: &mut dyn Input, header: &Header, scale: &Scale) -> 
 }
 
 fn open(input: &mut dyn Input) -> Result<Tiff<'_>, Problem> {
+    // What the file says of its strips is believed no further than its length can be worth.
+    let length = input.seek(SeekFrom::End(0)).map_err(io_problem)?;
+    input.rewind().map_err(io_problem)?;
+    let worth = (length.saturating_mul(EXPANSION)).clamp(1 << 20, PICTURE_BYTES) as usize;
     let mut limits = Limits::default();
-    limits.decoding_buffer_size = PICTURE_BYTES as usize;
-    limits.intermediate_buffer_size = STRIP_BYTES;
+    limits.decoding_buffer_size = worth;
+    limits.intermediate_buffer_size = worth.min(STRIP_BYTES);
     limits.ifd_value_size = ENTRY_BYTES;
-    Ok(Decoder::new(input).map_err(problem)?.with_limits(limits))
+    let mut tiff = Decoder::new(input).map_err(problem)?.with_limits(limits);
+    // The decoder makes room for what a strip claims to be before it reads it.
+    for tag in [Tag::StripByteCounts, Tag::TileByteCounts] {
+        let bytes =
+            tiff.find_tag(tag).map_err(problem)?.map(|value| value.into_u64_vec()).transpose().map_err(problem)?;
+        if bytes.is_some_and(|bytes| bytes.iter().any(|&bytes| bytes > length)) {
+            return Err(damaged("a part of it is said to be longer than the file"));
+        }
+    }
+    for tag in [Tag::TileWidth, Tag::TileLength] {
+        let side = tiff.find_tag(tag).map_err(problem)?.map(|value| value.into_u64()).transpose().map_err(problem)?;
+        if side.is_some_and(|side| side > MOST_SIDE) {
+            return Err(damaged("its tiles are too large"));
+        }
+    }
+    Ok(tiff)
 }
 
 fn unsupported(what: &str) -> Problem {
