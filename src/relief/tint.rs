@@ -145,6 +145,12 @@ impl Brush {
         0.40 * libm::expf(-offshore_px / (4.5 * unit))
     }
 
+    /// The sea's colour with its glow.
+    #[inline(always)]
+    pub fn glowing(&self, sea: Rgb, halo: f32) -> Rgb {
+        mix(sea, self.glow, halo)
+    }
+
     /// Whether the coast's line touches a pixel.
     #[inline]
     pub fn on_line(&self, line_px: f32) -> bool {
@@ -159,7 +165,7 @@ impl Brush {
         let ground = if land >= 1.0 {
             lit(scene.land(height_m.max(sea)), tone)
         } else {
-            let wet = mix(lit_floor(scene.sea(height_m.min(sea)), tone * 0.5), self.glow, halo());
+            let wet = self.glowing(lit_floor(scene.sea(height_m.min(sea)), tone * 0.5), halo());
             if land > 0.0 { mix(wet, lit(scene.land(height_m.max(sea)), tone), land) } else { wet }
         };
         mix(ground, self.ink, 0.62 * (self.half_line_px - line_px).clamp(0.0, 1.0))

@@ -122,8 +122,13 @@ impl Animation {
         let begin = y * self.map.width;
         for (x, pixel) in out.chunks_exact_mut(3).enumerate() {
             let line_px = self.shore.line_px[begin + x];
-            if self.shore.open(begin + x) && line_px > 1.0 && !self.brush.on_line(line_px) {
-                pixel.copy_from_slice(&self.tints.at(tints[x]));
+            if line_px > 1.0 && !self.brush.on_line(line_px) {
+                let colour = if self.shore.plain(begin + x) {
+                    self.tints.at(tints[x])
+                } else {
+                    self.encoder.bytes(self.brush.glowing(self.tints.sea_at(tints[x]), self.shore.glow(begin + x)))
+                };
+                pixel.copy_from_slice(&colour);
                 continue;
             }
             // The scene is over a sea at zero.

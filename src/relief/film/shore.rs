@@ -50,10 +50,11 @@ impl Shore {
         }
     }
 
-    /// Whether a pixel is out of the glow.
+    /// Whether a pixel is land, or sea out of the glow.
     #[inline]
-    pub fn open(&self, index: usize) -> bool {
-        self.glow[self.offshore2[index] as usize] == 0.0
+    pub fn plain(&self, index: usize) -> bool {
+        let offshore2 = self.offshore2[index];
+        offshore2 == 0 || self.glow[offshore2 as usize] == 0.0
     }
 
     /// How strongly the sea glows at a pixel.

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::super::{
-    palette::Encoder,
+    palette::{Encoder, Rgb},
     tint::{Brush, Place, Scene},
 };
 
@@ -12,9 +12,14 @@ const HEIGHTS: usize = 2048;
 /// Strengths of light told apart, a step of a byte each.
 const TONES: usize = 256;
 
+/// Of the lights on a sea floor, which are faint, one in so many is told apart.
+const FLOOR_TONES: usize = 4;
+
 /// Bytes of colours.
 pub struct Tints {
     table: Vec<[u8; 3]>,
+    /// The sea's colours in linear light, to be mixed with its glow.
+    sea: Vec<Rgb>,
     /// Steps a metre, land and sea.
     per_m: [f32; 2],
 }
@@ -24,16 +29,21 @@ impl Tints {
     pub fn new(scene: &Scene, brush: &Brush, encoder: &Encoder) -> Self {
         let [top, bottom] = scene.reach_m();
         let metres = [top, bottom].map(|end| end / (HEIGHTS - 1) as f32);
-        let colour = |i: usize| {
-            let (row, tone) = (i / TONES, (i % TONES) as f32 / (TONES - 1) as f32 * 2.0 - 1.0);
+        let linear = |row: usize, tone: f32| {
+            let tone = tone / (TONES - 1) as f32 * 2.0 - 1.0;
             let place = match row.checked_sub(HEIGHTS) {
                 None => Place { height_m: row as f32 * metres[0], tone, land: 1.0 },
                 Some(row) => Place { height_m: row as f32 * metres[1], tone, land: 0.0 },
             };
-            encoder.bytes(brush.pixel(scene, place, f32::INFINITY, || 0.0))
+            brush.pixel(scene, place, f32::INFINITY, || 0.0)
         };
-        let table = (0..2 * HEIGHTS * TONES).into_par_iter().map(colour).collect();
-        Self { table, per_m: metres.map(f32::recip) }
+        let bytes = |i: usize| encoder.bytes(linear(i / TONES, (i % TONES) as f32));
+        let table = (0..2 * HEIGHTS * TONES).into_par_iter().map(bytes).collect();
+        // The middle of the lights that one entry stands for.
+        let middle = |i: usize| (i * FLOOR_TONES % TONES) as f32 + 0.5 * (FLOOR_TONES - 1) as f32;
+        let floor = |i: usize| linear(HEIGHTS + i * FLOOR_TONES / TONES, middle(i));
+        let sea = (0..HEIGHTS * TONES / FLOOR_TONES).into_par_iter().map(floor).collect();
+        Self { table, sea, per_m: metres.map(f32::recip) }
     }
 
     /// Where the colours of a row's pixels stand.
@@ -53,6 +63,12 @@ impl Tints {
     #[inline]
     pub fn at(&self, place: u32) -> [u8; 3] {
         self.table[place as usize]
+    }
+
+    /// The sea's colour at a place of the sea, in linear light.
+    #[inline]
+    pub fn sea_at(&self, place: u32) -> Rgb {
+        self.sea[(place as usize - HEIGHTS * TONES) / FLOOR_TONES]
     }
 }
 
@@ -76,6 +92,12 @@ mod tests {
                 let apart = tints.at(place).iter().zip(want).map(|(a, b)| a.abs_diff(b)).max();
                 // Half a step of height where colours change fastest, and half a step of light.
                 assert!(apart <= Some(3), "{height_m} m, tone {}: {:?} {want:?}", tone[0], tints.at(place));
+                if height_m <= 0.0 {
+                    let glowing = encoder.bytes(brush.glowing(tints.sea_at(place), 0.2));
+                    let want = encoder.bytes(brush.pixel(&scene, place_of, f32::INFINITY, || 0.2));
+                    let apart = glowing.iter().zip(want).map(|(a, b)| a.abs_diff(b)).max();
+                    assert!(apart <= Some(3), "{height_m} m, tone {}: {glowing:?} {want:?}", tone[0]);
+                }
             }
         }
     }
