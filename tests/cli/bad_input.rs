@@ -136,7 +136,7 @@ fn a_run_that_fails_leaves_nothing() {
     let place = Place::new();
     // Only where the plates lie shows that both entries mean the same one.
     let entry = "[[stage.plate]]\nat_km = [100, 100]\nheading_deg = 0\nspeed_mm_per_yr = 1\n";
-    place.write("twice.toml", &format!("[world]\nsize = 16\n[[stage]]\nkind = \"plates\"\n{entry}{entry}"));
+    place.write("twice.toml", format!("[world]\nsize = 16\n[[stage]]\nkind = \"plates\"\n{entry}{entry}"));
     let said = place.run(&["grow", "twice.toml", "--out", "deep/er/w"]);
     let last = said.err.lines().last().unwrap();
     let what = "error: stage 'plates', step 1: plate 2: at_km = [100, 100] lies on a plate that an earlier entry has";
@@ -149,7 +149,7 @@ fn a_run_that_fails_leaves_nothing() {
 fn what_does_not_go_together_is_found_before_the_run() {
     let place = Place::new();
     let refused = |stage: &str, what: &str| {
-        place.write("r.toml", &format!("[world]\nsize = 16\nextent_km = 100\n\n[[stage]]\n{stage}\n"));
+        place.write("r.toml", format!("[world]\nsize = 16\nextent_km = 100\n\n[[stage]]\n{stage}\n"));
         let said = place.run(&["grow", "r.toml", "--out", "w"]);
         assert!(said.err.starts_with(&format!("error: r.toml:5: stage {what}")), "{}", said.err);
         assert_eq!((said.code, said.err.lines().count()), (2, 1), "{}", said.err);

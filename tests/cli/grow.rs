@@ -93,7 +93,7 @@ fn a_failed_force_keeps_the_old_world() {
     assert_eq!(place.run(&["grow", "rmp-graph", "--size", "16", "--out", "w"]).code, 0);
     let before = manifest(&place, "w");
     let entry = "[[stage.plate]]\nat_km = [100, 100]\nheading_deg = 0\nspeed_mm_per_yr = 1\n";
-    place.write("twice.toml", &format!("[world]\nsize = 16\n[[stage]]\nkind = \"plates\"\n{entry}{entry}"));
+    place.write("twice.toml", format!("[world]\nsize = 16\n[[stage]]\nkind = \"plates\"\n{entry}{entry}"));
     assert_eq!(place.run(&["grow", "twice.toml", "--out", "w", "--force"]).code, 1);
     assert_eq!(manifest(&place, "w"), before);
     assert_eq!(std::fs::read_dir(place.folder.path()).unwrap().count(), 2);

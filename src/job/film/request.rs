@@ -89,7 +89,7 @@ impl FilmPlan {
         }
         let view = picture::view(&request.view)?;
         let ffmpeg_args = request.ffmpeg_args.clone();
-        let animation = film::Options { size, view: view.clone(), range_m: EARTH_M, title: Some(title.to_owned()) };
+        let animation = film::Options { size, view, range_m: EARTH_M, title: Some(title.to_owned()) };
         let planned = Self {
             in_folder: request.file.is_none(),
             encoding: Settings { format, size, rate, hold_s: HOLD_S, ffmpeg_args },
