@@ -33,7 +33,9 @@ impl NumberedFolder {
         }
         let beside = folder.with_file_name(format!(".{}.partial-{}", name.to_string_lossy(), std::process::id()));
         if let Err(cause) = fs::create_dir(&beside) {
-            return refuse(&format!("cannot make this folder: {}", cause.to_string().to_lowercase()));
+            let why = cause.to_string();
+            let why = why.split(" (os error").next().unwrap_or(&why).to_lowercase();
+            return refuse(&format!("cannot make this folder: {why}"));
         }
         Ok(Self { folder: folder.to_owned(), beside, finished: false })
     }
