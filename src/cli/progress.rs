@@ -11,8 +11,10 @@ use super::{command::Voice, output::say};
 /// Ticks of a whole bar.
 const TICKS: u64 = 1000;
 
-fn resumed(time_yr: f64) -> String {
-    format!("goes on at {:.3} million years", time_yr * 1e-6)
+fn resumed(time_yr: f64, filmed: bool) -> String {
+    let film =
+        if filmed { "; the film begins there (--keep-timeline keeps the whole run for 'upthrust film')" } else { "" };
+    format!("goes on at {:.3} million years{film}", time_yr * 1e-6)
 }
 
 /// Follows a job.
@@ -51,7 +53,7 @@ impl Progress {
                     bar.set_position(*done as u64 * TICKS / (*of).max(1) as u64);
                     bar.set_message(format!("{done} of {of} worlds"));
                 }
-                Event::Resumed { time_yr } => bar.println(resumed(*time_yr)),
+                Event::Resumed { time_yr, filmed } => bar.println(resumed(*time_yr, *filmed)),
                 Event::Writing(file) => bar.set_message(format!("writing {file}")),
             },
             Progress::Lines { since } => match event {
@@ -62,7 +64,7 @@ impl Progress {
                     let (stage, of) = (moment.stage + 1, moment.stages);
                     say(&format!("{stage}/{of} {}: {} {steps}, {seconds:.1} s", moment.label, moment.step));
                 }
-                Event::Resumed { time_yr } => say(&resumed(*time_yr)),
+                Event::Resumed { time_yr, filmed } => say(&resumed(*time_yr, *filmed)),
                 Event::World { done, of } if done == of => say(&format!("{of} worlds")),
                 _ => {}
             },

@@ -87,7 +87,10 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     let mut checkpoints = Checkpoints::new(&partial.checkpoints(), plan, request.checkpoint_every);
     let from = checkpoints.latest().map_err(TimelineError::from)?;
     if let Some(checkpoint) = &from {
-        tell(Event::Resumed { time_yr: checkpoint.time_yr() });
+        if let Some(film) = &mut film {
+            film.begin_at(checkpoint);
+        }
+        tell(Event::Resumed { time_yr: checkpoint.time_yr(), filmed: film.is_some() });
     }
     let place = from.as_ref().map(Checkpoint::place);
     let keep = |layers: &Vec<Layer>| KeepSink::begin(&partial.timeline(), plan.world.grid(), layers, place);

@@ -49,6 +49,8 @@ pub enum Event<'a> {
     Resumed {
         /// The world's clock, years.
         time_yr: f64,
+        /// Whether a film begins there.
+        filmed: bool,
     },
     /// One of several worlds is done.
     World {

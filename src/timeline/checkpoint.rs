@@ -104,6 +104,17 @@ impl Checkpoint {
         (self.position.stage, self.position.step)
     }
 
+    /// Share of that stage that is done.
+    pub fn done(&self) -> f64 {
+        self.position.done
+    }
+
+    /// The world's clock when that stage began, years.
+    pub fn began_yr(&self) -> f64 {
+        // A stage that has not begun begins now.
+        if self.position.step == 0 { self.world.time_yr } else { self.position.began_yr }
+    }
+
     /// The world's clock, years.
     pub fn time_yr(&self) -> f64 {
         self.world.time_yr

@@ -73,6 +73,27 @@ fn ctrl_c_keeps_what_was_done() {
     assert!(other.code == 2 && other.err.contains("w: the world there is of another recipe"), "{}", other.err);
 }
 
+#[cfg(unix)]
+#[test]
+fn a_resumed_run_keeps_the_timeline_of_the_whole() {
+    let place = Place::new();
+    // A long stage after the plates, so that there is time to stop behind them.
+    let recipe = place.run(&["presets", "collision"]).out;
+    let peak = "[[stage]]\nkind = \"rmp_peak\"\niterations = 5000\nblend = \"add\"\n";
+    place.write("long.toml", format!("{recipe}\n{peak}"));
+    let set = ["--set", "plates.cells=160", "--keep-timeline", "--out", "w"];
+    let arguments = [&["grow", "long.toml", "--size", "300"], &set[..]].concat();
+    interrupted(&place, &arguments, Some("1/2 "));
+    // The peak is left out, so that it is soon done.
+    let said = place.run(&[&arguments[..], &["--resume", "--until", "plates"]].concat());
+    assert!(said.code == 0 && said.err.contains("goes on at 10.000 million years\n"), "{}", said.err);
+    let said = place.run(&["film", "w", "whole.png", "--video-size", "160x90"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let file = BufReader::new(std::fs::File::open(place.path("whole.png")).unwrap());
+    let frames = png::Decoder::new(file).read_info().unwrap().info().animation_control().unwrap().num_frames;
+    assert!(frames > 70, "{frames}");
+}
+
 /// A run of a few seconds, in steps of some ten milliseconds, with checkpoints as often as can be.
 #[cfg(unix)]
 const KILLED: [&str; 9] =

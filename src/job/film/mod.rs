@@ -27,7 +27,7 @@ use crate::{
     export::video::Encoder,
     grid::Grid,
     relief::film::{Animation, Shot, Words},
-    timeline::Moment,
+    timeline::{Checkpoint, Moment},
     world::World,
 };
 use pace::Clip;
@@ -50,6 +50,8 @@ pub struct Film {
     at: f64,
     next: f64,
     shot: Option<Shot>,
+    /// Whether the film begins with flat ground.
+    flat_before: bool,
     /// Whether the last picture shows the last shot itself.
     shown: bool,
 }
@@ -69,8 +71,19 @@ impl Film {
             at: 0.0,
             next: 1.0,
             shot: None,
+            flat_before: true,
             shown: false,
         })
+    }
+
+    /// Leaves out what a stopped run did before this checkpoint.
+    pub fn begin_at(&mut self, checkpoint: &Checkpoint) {
+        let (stage, began_yr) = (checkpoint.place().0, checkpoint.began_yr());
+        let passed_yr = checkpoint.time_yr() - began_yr;
+        (self.stage, self.began_yr) = (stage, began_yr);
+        self.at = self.clips.get(stage).map_or(0.0, |clip| clip.place(checkpoint.done(), passed_yr));
+        self.next = self.at.floor() + 1.0;
+        self.flat_before = false;
     }
 
     /// Whether the film needs the world at this moment: where a picture is due, and where a stage ends.
@@ -93,7 +106,8 @@ impl Film {
             (self.at, self.next) = (0.0, 1.0);
         }
         let to = self.animation.shot(world)?;
-        let from = self.shot.take().unwrap_or_else(|| to.before());
+        let first = || if self.flat_before { to.before() } else { to.clone() };
+        let from = self.shot.take().unwrap_or_else(first);
         let at = self.place(moment, self.began_yr);
         self.shown = false;
         while self.next <= at + SLACK {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::{Film, JobError};
 use crate::{
-    timeline::{Moment, Sink},
+    timeline::{Checkpoint, Moment, Sink},
     world::World,
 };
 
@@ -15,6 +15,13 @@ impl FilmSink {
     /// Looks on with this film.
     pub fn new(film: Film) -> Self {
         Self(Ok(film))
+    }
+
+    /// Leaves out what a stopped run did before this checkpoint.
+    pub fn begin_at(&mut self, checkpoint: &Checkpoint) {
+        if let Ok(film) = &mut self.0 {
+            film.begin_at(checkpoint);
+        }
     }
 
     /// Ends the film.
