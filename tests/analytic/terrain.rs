@@ -180,14 +180,11 @@ fn a_graph_of_one_face_halves_by_the_closed_form() {
 
 #[test]
 fn what_does_not_fit_is_said_in_one_line() {
-    let cancel = AtomicBool::new(false);
-    let mut world = World::new(square(32), 0.0);
-    let context = Context::new(1, "stage", &cancel);
     let outside = RmpGraphParams { at_km: Some([500.0, 10.0]), ..RmpGraphParams::default() };
     let narrow = RmpPeakParams { half_width_km: Some(0.01), octaves: 8, ..RmpPeakParams::default() };
     let nan = RmpRidgeParams { points_km: vec![[f64::NAN, 0.0]], ..RmpRidgeParams::default() };
-    for stage in [put(outside), put(narrow), put(nan)].iter_mut() {
-        let error = stage.step(&mut world, &context).unwrap_err().to_string();
+    for stage in [put(outside), put(narrow), put(nan)] {
+        let error = stage.fit(&square(32)).unwrap_err().to_string();
         assert!(!error.contains('\n') && error.contains("km"), "{error}");
     }
 }
