@@ -97,7 +97,7 @@ fn inside(i: i64, size: usize, edges: Edges) -> usize {
 }
 
 /// Keys' cubic convolution kernel (1981) with a = -1/2.
-fn keys(t: f64) -> f64 {
+pub(crate) fn keys(t: f64) -> f64 {
     let t = t.abs();
     if t < 1.0 {
         (1.5 * t - 2.5) * t * t + 1.0

@@ -6,7 +6,7 @@
 
 mod sample;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use image::RgbImage;
 use upthrust::{
@@ -99,54 +99,4 @@ fn odd_worlds_have_pictures_and_bad_ones_one_line() {
         let bad = relief::map(&world, &View::Relief, &Options::default()).unwrap_err();
         assert_eq!(bad.to_string(), "layer 'height' is not finite at cell (0, 0)");
     }
-}
-
-#[test]
-#[ignore = "draws for the eye, checks nothing"]
-fn pictures_for_the_eye() {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
-    let world = sample::world(1024, 1024);
-    let time = std::time::Instant::now();
-    let relief = draw(&world, View::Relief, &Options::bare(1024));
-    println!("bare relief at 1024: {:.3} s", time.elapsed().as_secs_f64());
-    let mut pictures = vec![("bare".to_owned(), relief)];
-    for (overlay, name) in [(false, "map"), (true, "plates")] {
-        let time = std::time::Instant::now();
-        let options = Options { overlay, title: Some("Continental collision".into()), ..Options::default() };
-        pictures.push((name.to_owned(), draw(&world, View::Relief, &options)));
-        println!("{name} at 1024: {:.3} s", time.elapsed().as_secs_f64());
-    }
-    for seed in [1, 2] {
-        let fractal = sample::fractal(1024, 1024, seed);
-        pictures.push((format!("fractal-{seed}"), draw(&fractal, View::Relief, &Options::default())));
-    }
-    let small = sample::hill(300, 300);
-    pictures.push(("hill".to_owned(), draw(&small, View::Relief, &Options::default())));
-    for layer in world.viewable() {
-        pictures.push((
-            layer.name().to_owned(),
-            draw(&world, View::Layer(layer), &Options { max_px: 700, ..Options::default() }),
-        ));
-    }
-    let thumbs: Vec<(String, RgbImage)> = (0..8)
-        .map(|i| (format!("sample {i}"), draw(&sample::world(128 + i, 128), View::Relief, &Options::bare(128))))
-        .collect();
-    pictures.push(("sheet".to_owned(), relief::contact_sheet(&thumbs, 4)));
-    let time = std::time::Instant::now();
-    for (name, picture) in &pictures {
-        export::write_picture(picture, &folder.join(format!("{name}.png"))).unwrap();
-    }
-    println!("{} pictures written: {:.3} s", pictures.len(), time.elapsed().as_secs_f64());
-    let time = std::time::Instant::now();
-    let provenance = upthrust::world::store::Provenance::default();
-    upthrust::world::store::write(&world, &provenance, &folder.join("world.zarr")).unwrap();
-    println!("store at 1024: {:.3} s", time.elapsed().as_secs_f64());
-    let time = std::time::Instant::now();
-    assert!(upthrust::world::store::read(&folder.join("world.zarr")).unwrap().0 == world);
-    println!("read back: {:.3} s", time.elapsed().as_secs_f64());
-    let time = std::time::Instant::now();
-    println!("{}", upthrust::measure::inspect(&world));
-    println!("inspect: {:.3} s", time.elapsed().as_secs_f64());
-    export::write_height_png(&world, &folder.join("height.png")).unwrap();
-    println!("{}", folder.display());
 }

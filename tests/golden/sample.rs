@@ -2,7 +2,6 @@
 
 use upthrust::{
     grid::{Edges, Field, Grid},
-    noise::{Fbm, Key},
     world::{Layer, Table, World},
 };
 
@@ -120,40 +119,5 @@ pub fn world(width: usize, height: usize) -> World {
             .number("heading_deg", "deg", column(|i| 77.0 * i as f64))
             .text("crust", SITES.iter().map(|s| if s.1 { "continental" } else { "oceanic" }.to_owned()).collect()),
     );
-    world
-}
-
-/// A hill country 10 km wide, far from any sea.
-pub fn hill(width: usize, height: usize) -> World {
-    let grid = Grid::new(width, height, 1e4, Edges::Open);
-    let mut world = World::new(grid, 0.0);
-    world.set_layer(
-        Layer::Bedrock,
-        Field::from_fn(grid, |x, y| {
-            let [x, y] = grid.center_m(x, y).map(|m| m / 1e4);
-            (420.0 + 260.0 * ridged([x * 3.0, y * 3.0]) + 25.0 * fbm([x * 12.0, y * 12.0], 7, 0.5)) as f32
-        }),
-    );
-    world
-}
-
-/// Continents and ranges of fractal noise, 1500 km wide.
-pub fn fractal(width: usize, height: usize, seed: u64) -> World {
-    let grid = Grid::new(width, height, 1.5e6, Edges::Open);
-    let key = Key::new(seed);
-    let sum = |name: &str, wavelength_m, hurst| Fbm::new(wavelength_m, hurst).octaves(key.named(name), grid.cell_m);
-    let (land, belts) = (sum("land", 9e5, 0.75), sum("belts", 7e5, 0.9));
-    let (crests, hills) = (sum("crests", 1.6e5, 0.85), sum("hills", 8e4, 0.8));
-    let mut world = World::new(grid, 0.0);
-    let height = |x: usize, y: usize| {
-        let at = grid.center_m(x, y);
-        let mainland = land.value(at) + 0.05;
-        let step = ((mainland + 0.35) / 0.35).clamp(0.0, 1.0);
-        let base = -4400.0 + 4330.0 * step * step * (3.0 - 2.0 * step) + 350.0 * mainland.max(0.0);
-        let belt = (-(belts.value(at) / 0.28).powi(2)).exp() * step;
-        let crest = crests.sampler().ridged_multifractal(at, 1.0, 2.0);
-        (base + belt * crest * 3300.0 + hills.value(at) * (60.0 + 250.0 * belt + 80.0 * (1.0 - step))) as f32
-    };
-    world.set_layer(Layer::Bedrock, Field::from_fn(grid, height));
     world
 }

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::grid::{Edges, Field, Grid};
+use crate::grid::{Edges, Field, Grid, keys};
 
 /// For each pixel along one side, the cells it is made of and their weights.
 struct Taps {
@@ -21,7 +21,7 @@ impl Taps {
             let middle = (pixel as f64 + 0.5) * scale - 0.5;
             let first = libm::ceil(middle - 2.0 * wide) as i64;
             let last = libm::floor(middle + 2.0 * wide) as i64;
-            let weights: Vec<f64> = (first..=last).map(|cell| kernel((cell as f64 - middle) / wide)).collect();
+            let weights: Vec<f64> = (first..=last).map(|cell| keys((cell as f64 - middle) / wide)).collect();
             let sum: f64 = weights.iter().sum();
             for (cell, weight) in (first..=last).zip(weights).filter(|(_, weight)| *weight != 0.0) {
                 let cell = match edges {
@@ -37,18 +37,6 @@ impl Taps {
 
     fn of(&self, pixel: usize) -> &[(usize, f32)] {
         &self.taps[self.begins[pixel]..self.begins[pixel + 1]]
-    }
-}
-
-/// Catmull and Rom's cubic.
-fn kernel(x: f64) -> f64 {
-    let x = x.abs();
-    if x < 1.0 {
-        (1.5 * x - 2.5) * x * x + 1.0
-    } else if x < 2.0 {
-        ((-0.5 * x + 2.5) * x - 4.0) * x + 2.0
-    } else {
-        0.0
     }
 }
 
