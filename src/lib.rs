@@ -3,10 +3,11 @@
 //!
 //! The rooms, in the order in which they may import each other (a room imports only rooms above it):
 //!
-//! - [`grid`], [`noise`], [`rmp`]: rasters in metres, keyed randomness, random partitions. Numerics only.
+//! - [`grid`], [`noise`], [`rmp`], [`flow`]: rasters in metres, keyed randomness, random partitions, the ways of water.
+//!   Numerics only.
 //! - [`world`], [`process`]: what all solvers meet through, and what a solver looks like.
 //! - [`crust`]: how high a column of rock floats.
-//! - [`terrain`], [`tectonics`], [`edit`]: the stages. They never import each other.
+//! - [`terrain`], [`tectonics`], [`climate`], [`erosion`], [`rivers`], [`edit`]: the stages. They never import each other.
 //! - [`recipe`], [`timeline`]: a recipe becomes a checked plan, a plan becomes a world.
 //! - [`measure`], [`relief`], [`export`]: numbers, pictures and files of a world.
 //! - `render`: pictures on the graphics adapter (feature `render`).
@@ -19,13 +20,18 @@ pub mod grid;
 pub mod noise;
 pub mod rmp;
 
+pub mod flow;
+
 pub mod world;
 
 pub mod process;
 
 pub mod crust;
 
+pub mod climate;
 pub mod edit;
+pub mod erosion;
+pub mod rivers;
 pub mod tectonics;
 pub mod terrain;
 

@@ -9,7 +9,7 @@ use std::{
 };
 
 /// The rooms; a room imports only rooms before it.
-const ROOMS: [&str; 25] = [
+const ROOMS: [&str; 26] = [
     "grid",
     "noise",
     "rmp",
@@ -23,6 +23,7 @@ const ROOMS: [&str; 25] = [
     "climate",
     "erosion",
     "volcano",
+    "rivers",
     "edit",
     "recipe",
     "timeline",
@@ -37,7 +38,7 @@ const ROOMS: [&str; 25] = [
     "main",
 ];
 /// They meet only through the world.
-const STAGE_ROOMS: [&str; 6] = ["terrain", "tectonics", "climate", "erosion", "volcano", "edit"];
+const STAGE_ROOMS: [&str; 7] = ["terrain", "tectonics", "climate", "erosion", "volcano", "rivers", "edit"];
 /// Dependencies that only some rooms may name.
 const CONFINED: [(&str, &[&str]); 9] = [
     ("wgpu", &["render", "app"]),

@@ -96,6 +96,32 @@ catalogue! {
     /// What the nearest plate boundary does, where one is near.
     BoundaryKind: "boundary_kind", "Boundary", "1", [0.0, 4.0], Categorical,
         Kind::Class(&["none", "collision", "subduction", "spreading", "transform"]);
+    /// Rock and soil taken away since the world began.
+    Wear: "wear", "Wear", "m", [0.0, 3000.0], Sequential, Kind::Continuous;
+    /// Sediment laid down since the world began.
+    Deposit: "deposit", "Deposit", "m", [0.0, 500.0], Sequential, Kind::Continuous;
+    /// Rain and snow of a year.
+    Rain: "rain", "Rain", "mm/yr", [0.0, 3000.0], Sequential, Kind::Continuous;
+    /// Mean temperature of a year at the ground.
+    Temperature: "temperature", "Temperature", "degC", [-30.0, 30.0], Diverging, Kind::Continuous;
+    /// Height above which snow outlasts the summer.
+    SnowLine: "snow_line", "Snow line", "m", [0.0, 6000.0], Sequential, Kind::Continuous;
+    /// What grows there.
+    Biome: "biome", "Biome", "1", [0.0, 11.0], Categorical,
+        Kind::Class(&["sea", "ice", "tundra", "taiga", "temperate forest", "temperate rain forest", "grassland",
+            "shrubland", "desert", "savanna", "tropical dry forest", "tropical rain forest"]);
+    /// Water that runs off through a cell, a year's mean.
+    Discharge: "discharge", "Discharge", "m3/s", [0.0, 5000.0], Sequential, Kind::Continuous;
+    /// Width of the river at bank-full flow; 0 where none runs.
+    RiverWidth: "river_width", "River width", "m", [0.0, 500.0], Sequential, Kind::Continuous;
+    /// Depth of the river at bank-full flow.
+    RiverDepth: "river_depth", "River depth", "m", [0.0, 20.0], Sequential, Kind::Continuous;
+    /// Depth of standing water on land.
+    LakeDepth: "lake_depth", "Lake depth", "m", [0.0, 200.0], Sequential, Kind::Continuous;
+    /// Which river's basin the cell lies in, numbered from the largest, 1; 0 in the sea.
+    Basin: "basin", "Basin", "1", [0.0, 255.0], Categorical, Kind::Id;
+    /// Strahler's order of the stream; 0 where none runs.
+    StreamOrder: "stream_order", "Stream order", "1", [0.0, 9.0], Sequential, Kind::Continuous;
 }
 
 impl Layer {

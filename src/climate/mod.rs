@@ -1,0 +1,1 @@
+//! Weather: wind, rain, temperature and the snow line. Writes layers; carves nothing.
