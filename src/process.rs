@@ -40,6 +40,12 @@ pub trait Process: Send {
         Ok(())
     }
 
+    /// Runs as many steps of its own as cover the years that the stage it is coupled to has just taken. It cannot be
+    /// cancelled: what the other stage did stands already.
+    fn follow(&mut self, _world: &mut World, _context: &Context, _span_yr: f64) -> Result<(), ProcessError> {
+        Err(ProcessError::Unfit("cannot step in turn with another stage".to_owned()))
+    }
+
     /// What it needs to go on later, besides its parameters and the world.
     fn save(&self) -> State;
 

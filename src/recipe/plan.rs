@@ -64,6 +64,8 @@ pub struct Stage {
     pub film: Option<FilmTime>,
     /// Its own parameters.
     pub params: Json,
+    /// The stages that step in turn with it.
+    pub coupled: Vec<Stage>,
 }
 
 /// How long a stage takes in a film.
@@ -84,7 +86,17 @@ impl Stage {
 
     /// A fresh process.
     pub fn build(&self) -> Result<Box<dyn Process>, ProcessError> {
-        self.kind.build(&self.params, Setting { placement: self.placement.clone(), steps: self.steps })
+        let leads = !self.coupled.is_empty();
+        self.kind.build(&self.params, Setting { placement: self.placement.clone(), steps: self.steps, leads })
+    }
+
+    /// Whether it asks to step in turn with the stage before it.
+    fn follows(&self) -> bool {
+        self.params["coupled"] == Json::Bool(true)
+    }
+
+    fn is_called(&self, name: &str) -> bool {
+        self.label == name || self.key == name
     }
 }
 
@@ -180,6 +192,14 @@ pub(crate) fn stage_keys(root: &Table) -> Vec<StageKey> {
         .collect()
 }
 
+/// Where the stages of a tree stand.
+fn stage_places(root: &Table) -> Vec<Place> {
+    match root.get("stage").map(|node| &node.value) {
+        Some(Value::List(items)) => items.iter().map(|item| item.place.clone()).collect(),
+        _ => Vec::new(),
+    }
+}
+
 impl Plan {
     /// Validates a recipe with its overrides.
     pub fn new(source: &Source, overrides: &Overrides) -> Result<Self, RecipeError> {
@@ -197,6 +217,7 @@ impl Plan {
         imports.lay_out(&mut world, &root, &source.file)?;
         // A file can be a sliver too.
         reader.sides(&world, &root)?;
+        let stages = reader.couple(&root, stages)?;
         reader.fit(&root, &stages, world.grid())?;
         let text = |key: &str| match root.get(key).map(|node| &node.value) {
             Some(Value::Text(text)) => Some(text.clone()),
@@ -226,7 +247,7 @@ impl Plan {
 
     /// The stage that a word means: its id, kind#ordinal, or its kind where that is the only one.
     pub fn find_stage(&self, name: &str) -> Option<usize> {
-        let exact = self.stages.iter().position(|stage| stage.label == name || stage.key == name);
+        let exact = self.stages.iter().position(|s| s.is_called(name) || s.coupled.iter().any(|c| c.is_called(name)));
         exact.or_else(|| {
             let mut of_kind = self.stages.iter().enumerate().filter(|(_, stage)| stage.kind.kind == name);
             of_kind.next().filter(|_| of_kind.next().is_none()).map(|(i, _)| i)
@@ -235,7 +256,8 @@ impl Plan {
 
     /// The names of all stages, for messages.
     pub fn stage_names(&self) -> String {
-        self.stages.iter().map(|stage| stage.label.as_str()).collect::<Vec<_>>().join(", ")
+        let with_coupled = self.stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.coupled));
+        with_coupled.map(|stage| stage.label.as_str()).collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -340,12 +362,38 @@ impl Reader<'_> {
         Ok(made)
     }
 
+    /// Puts the stages that ask for it behind those they step in turn with. Ones that are switched off stay where they are.
+    fn couple(&self, root: &Table, stages: Vec<Stage>) -> Result<Vec<Stage>, RecipeError> {
+        let places = stage_places(root);
+        let mut made: Vec<Stage> = Vec::with_capacity(stages.len());
+        for (index, stage) in stages.into_iter().enumerate() {
+            if !stage.enabled || !stage.follows() {
+                made.push(stage);
+                continue;
+            }
+            match made.iter_mut().rev().find(|before| before.enabled) {
+                Some(leader) if leader.kind.leads => leader.coupled.push(stage),
+                _ => {
+                    let what = format!(
+                        "stage '{}': coupled = true steps in turn with plates, so the stage before it must be 'plates'",
+                        stage.label
+                    );
+                    let place = places.get(index).cloned().unwrap_or(Place::File);
+                    return Err(self.error(&place, Problem::Unfit(what)));
+                }
+            }
+        }
+        Ok(made)
+    }
+
     /// Asks every stage that runs whether it goes together with the map.
     fn fit(&self, root: &Table, stages: &[Stage], grid: Grid) -> Result<(), RecipeError> {
-        let Some(Node { value: Value::List(items), .. }) = root.get("stage") else { return Ok(()) };
-        for (item, stage) in items.iter().zip(stages).filter(|(_, stage)| stage.enabled) {
-            let unfit =
-                |e: ProcessError| self.error(&item.place, Problem::Unfit(format!("stage '{}': {e}", stage.label)));
+        let places: BTreeMap<String, Place> =
+            stage_keys(root).iter().map(StageKey::key).zip(stage_places(root)).collect();
+        let all = stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.coupled));
+        for stage in all.filter(|stage| stage.enabled) {
+            let place = places.get(&stage.key).unwrap_or(&Place::File);
+            let unfit = |e: ProcessError| self.error(place, Problem::Unfit(format!("stage '{}': {e}", stage.label)));
             stage.build().and_then(|process| process.fit(&grid)).map_err(unfit)?;
         }
         Ok(())
@@ -388,6 +436,7 @@ impl Reader<'_> {
             steps: common.steps,
             film: self.film(&common, table)?,
             params,
+            coupled: Vec::new(),
         })
     }
 

@@ -97,11 +97,13 @@ pub struct DripParams {
     pub count: u32,
     /// The step that yields a value that is no number.
     pub break_at: Option<u32>,
+    /// Whether it steps in turn with the plates.
+    pub coupled: bool,
 }
 
 impl Default for DripParams {
     fn default() -> Self {
-        Self { count: 4, break_at: None }
+        Self { count: 4, break_at: None, coupled: false }
     }
 }
 
@@ -142,6 +144,20 @@ impl Process for Drip {
         let area_m2 = world.grid.cell_area_m2() * world.grid.cells() as f64;
         world.ledger.book_in(context.stage, Matter::Rock, area_m2);
         Ok(Step { done: self.done as f64 / self.count as f64, elapsed_yr: 1.0 })
+    }
+
+    fn follow(&mut self, world: &mut World, context: &Context, span_yr: f64) -> Result<(), ProcessError> {
+        // Lays down 30 m in a million years in the west and nothing in the east.
+        let before = world.rock_m3();
+        let (width, depth) = (world.grid.width, (span_yr * 30e-6) as f32);
+        let sediment = world.layer_mut(Layer::Sediment);
+        crate::grid::for_each_row(&mut sediment.data, width, |_, row| {
+            row[..width / 2].iter_mut().for_each(|v| *v += depth);
+        });
+        self.done += 1;
+        let laid = world.rock_m3() - before;
+        world.ledger.book_in(context.stage, Matter::Rock, laid);
+        Ok(())
     }
 
     fn save(&self) -> State {

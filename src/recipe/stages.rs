@@ -22,6 +22,8 @@ pub struct Setting {
     pub placement: Placement,
     /// An expert's number of steps.
     pub steps: Option<u64>,
+    /// Whether other stages step in turn with this one.
+    pub leads: bool,
 }
 
 type Build = Box<dyn Fn(&Json, Setting) -> Result<Box<dyn Process>, ProcessError> + Send + Sync>;
@@ -36,6 +38,8 @@ pub struct StageKind {
     pub about: &'static str,
     /// Whether its heights join by `blend`.
     pub blends: bool,
+    /// Whether other stages may be coupled to it.
+    pub leads: bool,
     /// JSON schema of its own parameters.
     pub schema: Json,
     /// Its parameters' defaults.
@@ -80,7 +84,16 @@ where
         make(params, setting)
     };
     let defaults = serde_json::to_value(P::default()).unwrap_or_default();
-    StageKind { kind, title, about, blends: false, schema: schema::of::<P>(), defaults, build: Box::new(build) }
+    StageKind {
+        kind,
+        title,
+        about,
+        blends: false,
+        leads: false,
+        schema: schema::of::<P>(),
+        defaults,
+        build: Box::new(build),
+    }
 }
 
 #[rustfmt::skip]
@@ -89,8 +102,9 @@ fn table() -> Vec<StageKind> {
     vec![
         StageKind {
             blends: true,
+            leads: true,
             ..row("plates", "Plates", "Rigid plates drift and collide; ranges rise where they meet.", |plates: PlatesParams, setting| {
-                Ok(plates.process(setting.placement, setting.steps))
+                Ok(plates.process(setting.placement, setting.steps, setting.leads))
             })
         },
         ground::<t::FbmParams>("fbm", "Fractal ground", "Fractional Brownian motion: hills whose roughness is a number."),

@@ -4,13 +4,15 @@
 //! drags them (`mantle`); what their contacts say (`contact`) becomes stretches of border (`stretch`). Every plate carries
 //! its ground on a raster of its own (`plate`), so that nothing smears; where rasters overlap or part, crust is exchanged
 //! (`exchange`), ranges are raised (`raise`) and volcanoes grow (`arc`). `simulation` runs it; `surface` turns crust into
-//! heights, which the map reads through one fold-free warp (`warp`), so that straight borders show nowhere.
+//! heights, which the map reads through one fold-free warp (`warp`), so that straight borders show nowhere. Where another
+//! stage carves the map while the plates move, `carved` keeps the two together.
 //!
 //! This room alone touches rapier2d. It knows the map's grid only when it publishes: plates run on cells of their own,
 //! so that a larger map is sharper, not different.
 
 mod arc;
 mod border;
+mod carved;
 mod contact;
 mod domain;
 mod engine;

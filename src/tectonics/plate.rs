@@ -47,6 +47,8 @@ pub struct Rock {
     pub added_m: f32,
     /// Height of volcanoes on top, m.
     pub edifice_m: f32,
+    /// Thickness that was worn off, less than nothing where more was laid down, m.
+    pub worn_m: f32,
     /// Continental share, 0 to 1.
     pub kind: f32,
     /// When the crust was made, My after the run's start (negative: before).
@@ -63,7 +65,7 @@ const RATE_MEMORY_MYR: f32 = 1.0;
 impl Rock {
     /// Crust in the column, m.
     pub fn thickness_m(&self) -> f64 {
-        self.crust_m as f64 + self.added_m as f64 + self.edifice_m as f64
+        self.crust_m as f64 + self.added_m as f64 + self.edifice_m as f64 - self.worn_m as f64
     }
 
     /// Speed of thickening now, m/My: what was noted has faded since.
@@ -174,7 +176,7 @@ impl Plate {
     pub fn sample(&self, at_m: DVec2, time_myr: f32) -> Option<Rock> {
         let at = self.frame.to_cells(self.pose.to_body(at_m)) - 0.5;
         let (base, f) = (at.floor(), at - at.floor());
-        let mut sum = [0.0f64; 6];
+        let mut sum = [0.0f64; 7];
         let mut weight = 0.0;
         for (dx, dy, w) in [
             (0.0, 0.0, (1.0 - f.x) * (1.0 - f.y)),
@@ -184,16 +186,23 @@ impl Plate {
         ] {
             let Some(i) = self.frame.cell_at(base + DVec2::new(dx, dy)).filter(|&i| self.owned[i]) else { continue };
             let r = &self.rock[i];
-            for (s, v) in
-                sum.iter_mut().zip([r.crust_m, r.added_m, r.edifice_m, r.kind, r.born_myr, r.rate_at(time_myr)])
-            {
+            for (s, v) in sum.iter_mut().zip([
+                r.crust_m,
+                r.added_m,
+                r.edifice_m,
+                r.worn_m,
+                r.kind,
+                r.born_myr,
+                r.rate_at(time_myr),
+            ]) {
                 *s += w * v as f64;
             }
             weight += w;
         }
         (weight > 1e-9).then(|| {
-            let [crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr] = sum.map(|s| (s / weight) as f32);
-            Rock { crust_m, added_m, edifice_m, kind, born_myr, rate_m_per_myr, rated_myr: time_myr }
+            let [crust_m, added_m, edifice_m, worn_m, kind, born_myr, rate_m_per_myr] =
+                sum.map(|s| (s / weight) as f32);
+            Rock { crust_m, added_m, edifice_m, worn_m, kind, born_myr, rate_m_per_myr, rated_myr: time_myr }
         })
     }
 

@@ -65,6 +65,8 @@ pub struct Books {
     pub sunk_m3: f64,
     /// Waiting to be moved.
     pub pending_m3: f64,
+    /// Worn off by others, less what they laid down.
+    pub worn_m3: f64,
 }
 
 /// Convergence between two plates.
@@ -221,9 +223,9 @@ impl Simulation {
         let area = self.domain.cell_m() * self.domain.cell_m();
         for cell in lost {
             let volume = cell.rock.thickness_m() * area;
-            // Ocean floor sinks; arcs and plateaus on it are scraped off.
-            let kept =
-                if cell.rock.kind > 0.5 { volume } else { (cell.rock.added_m + cell.rock.edifice_m) as f64 * area };
+            // Ocean floor sinks; arcs, plateaus and sediment on it are scraped off.
+            let on_top = cell.rock.added_m + cell.rock.edifice_m - cell.rock.worn_m.min(0.0);
+            let kept = if cell.rock.kind > 0.5 { volume.max(0.0) } else { on_top as f64 * area };
             self.books.sunk_m3 += volume - kept;
             if kept > 0.0 {
                 self.books.pending_m3 += kept;
@@ -335,7 +337,7 @@ impl Simulation {
         let thickest = self.rules.belt.thickest_m as f32;
         for ((_, volume, pot), shares) in jobs.into_iter().zip(&shares) {
             let put = self.apply(shares, volume, |rock| {
-                let most = (thickest - rock.crust_m).max(0.0);
+                let most = (thickest - rock.crust_m + rock.worn_m).max(0.0);
                 (&mut rock.added_m, [0.0, most])
             });
             match pot {

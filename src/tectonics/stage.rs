@@ -5,12 +5,13 @@ use glam::DVec2;
 use crate::{
     grid::{Field, Grid},
     noise::Key,
-    process::{Context, Ground, Placement, Process, ProcessError, State, Step},
+    process::{Blend, Context, Ground, Placement, Process, ProcessError, State, Step},
     world::{Layer, Matter, Table, World},
 };
 
 use super::{
     arc::Arc,
+    carved::Carved,
     domain::Domain,
     engine::{Drive, Engine, Settings, Style},
     initial::{self, Continents},
@@ -21,7 +22,7 @@ use super::{
     plate::Plate,
     raise::Belt,
     simulation::{Books, Rules, Simulation},
-    surface::Surface,
+    surface::{Detail, Plains, Surface},
     tables::{self, Drift},
     thesis::Thesis,
     warp::Warp,
@@ -31,13 +32,29 @@ use super::{
 const SHOWN: [Layer; 6] =
     [Layer::Uplift, Layer::PlateId, Layer::CrustKind, Layer::CrustAge, Layer::CrustThickness, Layer::BoundaryKind];
 
+/// What it may change: the ground and what it shows; where others carve, also what they lay on the ground and tell of it.
+const WRITTEN: [Layer; 11] = [
+    Layer::Bedrock,
+    Layer::Uplift,
+    Layer::PlateId,
+    Layer::CrustKind,
+    Layer::CrustAge,
+    Layer::CrustThickness,
+    Layer::BoundaryKind,
+    Layer::Lava,
+    Layer::Sediment,
+    Layer::Wear,
+    Layer::Deposit,
+];
+
 /// Share of the square that the thesis's block of plates fills.
 const THESIS_BLOCK: f64 = 0.9;
 
 impl PlatesParams {
     /// The stage as a process; `steps` asks for about that many instead of as many as the speed needs.
-    pub fn process(self, placement: Placement, steps: Option<u64>) -> Box<dyn Process> {
-        Box::new(Stage { params: self, placement, steps, ground: None, run: None, resume: None })
+    /// Where it `leads`, others carve the map between its steps.
+    pub fn process(self, placement: Placement, steps: Option<u64>, leads: bool) -> Box<dyn Process> {
+        Box::new(Stage { params: self, placement, steps, leads, ground: None, run: None, resume: None })
     }
 }
 
@@ -45,6 +62,7 @@ struct Stage {
     params: PlatesParams,
     placement: Placement,
     steps: Option<u64>,
+    leads: bool,
     /// What the stage found.
     ground: Option<Ground>,
     run: Option<Run>,
@@ -63,31 +81,34 @@ struct Geologic {
     /// Outlines in body coordinates, m.
     bodies: Vec<Vec<DVec2>>,
     booked: Books,
+    /// The map that others carve, where there are any.
+    carved: Option<(Carved, Plains)>,
 }
 
-/// Where a saved run stood: steps taken, and what the ledger has of it.
-#[derive(Clone, Copy)]
+/// Where a saved run stood: steps taken, what the ledger has of it, and the map it shares with others.
 struct Resume {
     steps: u64,
     booked: Books,
+    shared: Option<Shared>,
+}
+
+/// What is saved of a map that others carve: the height expected by the plates, and the wear before each step.
+struct Shared {
+    expected: Field<f32>,
+    worn: Vec<Field<f32>>,
 }
 
 impl Process for Stage {
     fn writes(&self) -> &'static [Layer] {
-        &[
-            Layer::Bedrock,
-            Layer::Uplift,
-            Layer::PlateId,
-            Layer::CrustKind,
-            Layer::CrustAge,
-            Layer::CrustThickness,
-            Layer::BoundaryKind,
-        ]
+        if self.leads { &WRITTEN } else { &WRITTEN[..7] }
     }
 
     fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
         let domain = Domain::around(grid, self.params.margin, self.params.cells as usize);
         check(&self.params, &domain)?;
+        if self.leads {
+            self.check_leading()?;
+        }
         self.params.continents.as_deref().map(paint::open_continents).transpose()?;
         self.params.map.as_deref().map(paint::open_plates).transpose()?;
         Ok(())
@@ -99,7 +120,12 @@ impl Process for Stage {
         }
         let Some(run) = &mut self.run else { return Ok(Step::WHOLE) };
         let before = run.time_yr(&self.params);
-        run.advance();
+        match run {
+            Run::Geologic(geologic) if geologic.carved.is_some() => {
+                geologic.advance_carved(&self.params, world, context);
+            }
+            _ => run.advance(),
+        }
         let (steps, done) = run.progress();
         if !run.finite() {
             return Err(ProcessError::Failed(format!(
@@ -112,6 +138,7 @@ impl Process for Stage {
     fn publish(&mut self, world: &mut World, context: &Context) -> Result<(), ProcessError> {
         let (Some(run), Some(ground)) = (&mut self.run, &self.ground) else { return Ok(()) };
         match run {
+            Run::Geologic(run) if run.carved.is_some() => run.publish_crust(world, context),
             Run::Geologic(run) => run.publish(&self.params, ground, world, context)?,
             Run::Thesis(run) => {
                 ground.put(&run.height, world, context);
@@ -131,11 +158,18 @@ impl Process for Stage {
         let (steps, booked) = match &self.run {
             Some(Run::Geologic(run)) => (run.simulation.steps_done(), run.booked),
             Some(Run::Thesis(run)) => (run.progress().1, Books::default()),
-            None => self.resume.map_or((0, Books::default()), |resume| (resume.steps, resume.booked)),
+            None => self.resume.as_ref().map_or((0, Books::default()), |resume| (resume.steps, resume.booked)),
         };
-        let numbers = [booked.start_m3, booked.made_m3, booked.sunk_m3, booked.pending_m3];
+        let numbers = [booked.start_m3, booked.made_m3, booked.sunk_m3, booked.pending_m3, booked.worn_m3];
         let blob = steps.to_le_bytes().into_iter().chain(numbers.into_iter().flat_map(f64::to_le_bytes)).collect();
-        State { fields: self.ground.as_ref().map(Ground::save).unwrap_or_default(), blob }
+        let mut fields = self.ground.as_ref().map(Ground::save).unwrap_or_default();
+        if let Some(Run::Geologic(run)) = &self.run
+            && let Some((carved, _)) = &run.carved
+        {
+            fields.push((EXPECTED.to_owned(), carved.expected().clone()));
+            fields.extend(carved.worn().iter().map(|worn| (WORN.to_owned(), worn.clone())));
+        }
+        State { fields, blob }
     }
 
     fn restore(&mut self, state: State, _context: &Context) -> Result<(), ProcessError> {
@@ -143,15 +177,42 @@ impl Process for Stage {
         let broken = || ProcessError::Failed("the saved state of the plates is broken".to_owned());
         let number = |i: usize| word(i).map(f64::from_le_bytes).ok_or_else(broken);
         let steps = word(0).map(u64::from_le_bytes).ok_or_else(broken)?;
-        let booked = Books { start_m3: number(1)?, made_m3: number(2)?, sunk_m3: number(3)?, pending_m3: number(4)? };
+        let booked = Books {
+            start_m3: number(1)?,
+            made_m3: number(2)?,
+            sunk_m3: number(3)?,
+            pending_m3: number(4)?,
+            worn_m3: number(5)?,
+        };
         self.ground = Ground::restore(self.placement.blend, &state.fields);
+        let named = |wanted: &'static str| state.fields.iter().filter(move |(name, _)| name == wanted);
+        let worn: Vec<Field<f32>> = named(WORN).map(|(_, field)| field.clone()).collect();
+        if worn.len() as u64 != if self.leads { steps } else { 0 } {
+            return Err(broken());
+        }
+        let shared = named(EXPECTED).next().map(|(_, field)| Shared { expected: field.clone(), worn });
         // A run that was saved before its first step begins like any other.
-        self.resume = self.ground.is_some().then_some(Resume { steps, booked });
+        self.resume = self.ground.is_some().then_some(Resume { steps, booked, shared });
         Ok(())
     }
 }
 
+/// Names of saved fields: the height that the plates expect, and the wear before each step.
+const EXPECTED: &str = "expected";
+const WORN: &str = "worn";
+
 impl Stage {
+    /// Plates that others carve own the whole ground.
+    fn check_leading(&self) -> Result<(), ProcessError> {
+        let whole = self.placement.blend == Blend::Replace && self.placement.mask.is_none();
+        if whole && self.params.style == PlateStyle::Geologic {
+            return Ok(());
+        }
+        Err(ProcessError::Unfit(
+            "a stage is coupled to these plates, so they take no blend, no mask and not the style 'thesis'; set its coupled = false".to_owned(),
+        ))
+    }
+
     /// Sets the run up; a resumed one is replayed to where it stood, which gives the same bits.
     fn begin(&mut self, world: &mut World, context: &Context) -> Result<(), ProcessError> {
         if self.ground.is_none() {
@@ -163,18 +224,17 @@ impl Stage {
             }
             PlateStyle::Thesis => Run::Thesis(Box::new(thesis(&self.params, world.grid, context.key)?)),
         };
-        if let Some(resume) = self.resume {
-            for _ in 0..resume.steps {
-                context.check()?;
-                run.advance();
-            }
-            if let Run::Geologic(run) = &mut run {
-                run.booked = resume.booked;
-            }
-        } else if let Run::Geologic(run) = &run {
-            world.ledger.open(context.stage, Matter::Crust, run.simulation.crust_m3());
+        let resume = self.resume.take();
+        if let (true, Run::Geologic(run)) = (self.leads, &mut run) {
+            run.share(&self.params, world, context, resume.is_none());
         }
-        self.resume = None;
+        match (resume, &mut run) {
+            (Some(resume), run) => run.replay(resume, &self.params, context)?,
+            (None, Run::Geologic(run)) => {
+                world.ledger.open(context.stage, Matter::Crust, run.simulation.crust_m3());
+            }
+            (None, Run::Thesis(_)) => {}
+        }
         self.run = Some(run);
         Ok(())
     }
@@ -186,6 +246,26 @@ impl Run {
             Run::Geologic(run) => run.simulation.advance(),
             Run::Thesis(run) => run.advance(),
         }
+    }
+
+    /// Takes the steps of a saved run again.
+    fn replay(&mut self, resume: Resume, params: &PlatesParams, context: &Context) -> Result<(), ProcessError> {
+        let Resume { steps, booked, shared } = resume;
+        let worn = shared.as_ref().map_or(&[][..], |shared| &shared.worn);
+        for step in 0..steps as usize {
+            context.check()?;
+            if let (Run::Geologic(run), Some(worn)) = (&mut *self, worn.get(step)) {
+                run.simulation.wear(worn);
+            }
+            self.advance();
+        }
+        if let Run::Geologic(run) = self {
+            run.booked = booked;
+            if let (Some((carved, _)), Some(Shared { expected, worn })) = (&mut run.carved, shared) {
+                carved.restore(&run.simulation, params, expected, worn);
+            }
+        }
+        Ok(())
     }
 
     fn progress(&self) -> (u64, u64) {
@@ -264,7 +344,7 @@ impl Geologic {
             .map(|p| Drift::of(simulation.engine.velocity_at(p, tables::middle(&simulation, p).0)))
             .collect();
         let booked = Books { start_m3: simulation.books.start_m3, ..Books::default() };
-        Ok(Self { simulation, warp, first, bodies, booked })
+        Ok(Self { simulation, warp, first, bodies, booked, carved: None })
     }
 
     fn publish(
@@ -283,21 +363,90 @@ impl Geologic {
         for layer in SHOWN {
             world.remove_layer(layer);
         }
-        for (layer, field) in surface.read(world.grid, &self.warp, params, sea_m, context.key.named("detail")) {
+        let detail = Detail::new(world.grid, params, sea_m, context.key.named("detail"));
+        for (layer, field) in surface.read(&self.warp, &detail) {
             match layer {
                 Layer::Bedrock => ground.put(&field, world, context),
                 other => world.set_layer(other, field),
             }
         }
-        world.set_table(tables::plates(run, &self.warp, &self.first));
-        world.set_table(tables::outlines(run, &self.warp, &self.bodies));
-        world.set_table(tables::convergence(run));
-        let books = run.books;
+        self.show_tables(world);
+        self.book(world, context);
+        Ok(())
+    }
+
+    /// Lays the ground out for others to carve; one that goes on finds it there already.
+    fn share(&mut self, params: &PlatesParams, world: &mut World, context: &Context, fresh: bool) {
+        let run = &self.simulation;
+        let sea_m = params.land_share.map_or(world.sea_level_m, |share| {
+            Surface::of(run, params).sea_level_for(run.domain.map_m, &self.warp, share)
+        });
+        let plains = Plains::new(world.grid, params, sea_m, context.key.named("detail"));
+        let carved = Carved::begin(run, &self.warp, params, world.grid, &plains);
+        if fresh {
+            let before = world.rock_m3();
+            for layer in [Layer::Lava, Layer::Sediment, Layer::Wear, Layer::Deposit] {
+                world.remove_layer(layer);
+            }
+            world.set_layer(Layer::Bedrock, carved.expected().clone());
+            book_rock(world, context, before);
+        }
+        self.carved = Some((carved, plains));
+    }
+
+    /// A step between two turns of those who carve.
+    fn advance_carved(&mut self, params: &PlatesParams, world: &mut World, context: &Context) {
+        let Some((carved, plains)) = &mut self.carved else { return };
+        let run = &mut self.simulation;
+        let wear = carved.read_wear(world, &run.domain);
+        run.wear(wear);
+        let began_myr = run.time_myr;
+        run.advance();
+        let span_yr = (run.time_myr - began_myr) * 1e6;
+        let before = world.rock_m3();
+        carved.carry(run, params, plains, span_yr, world);
+        book_rock(world, context, before);
+        if let Some(share) = params.land_share {
+            world.sea_level_m = carved.expected().level_above(share);
+        }
+    }
+
+    /// Shows what the plates know besides the ground, which is up to date after every step.
+    fn publish_crust(&mut self, world: &mut World, context: &Context) {
+        if let Some((carved, plains)) = &self.carved {
+            for (layer, field) in carved.read_crust(plains.border_m) {
+                world.set_layer(layer, field);
+            }
+        }
+        self.show_tables(world);
+        self.book(world, context);
+    }
+
+    fn show_tables(&self, world: &mut World) {
+        world.set_table(tables::plates(&self.simulation, &self.warp, &self.first));
+        world.set_table(tables::outlines(&self.simulation, &self.warp, &self.bodies));
+        world.set_table(tables::convergence(&self.simulation));
+    }
+
+    fn book(&mut self, world: &mut World, context: &Context) {
+        let books = self.simulation.books;
         world.ledger.book_in(context.stage, Matter::Crust, books.made_m3 - self.booked.made_m3);
         world.ledger.book_out(context.stage, Matter::Crust, books.sunk_m3 - self.booked.sunk_m3);
-        world.ledger.close(context.stage, Matter::Crust, run.crust_m3());
+        let worn = books.worn_m3 - self.booked.worn_m3;
+        world.ledger.book_out(context.stage, Matter::Crust, worn.max(0.0));
+        world.ledger.book_in(context.stage, Matter::Crust, (-worn).max(0.0));
+        world.ledger.close(context.stage, Matter::Crust, self.simulation.crust_m3());
         self.booked = books;
-        Ok(())
+    }
+}
+
+/// Books what the column of rock changed by.
+fn book_rock(world: &mut World, context: &Context, before_m3: f64) {
+    let gained = world.rock_m3() - before_m3;
+    if gained >= 0.0 {
+        world.ledger.book_in(context.stage, Matter::Rock, gained);
+    } else {
+        world.ledger.book_out(context.stage, Matter::Rock, -gained);
     }
 }
 

@@ -29,13 +29,13 @@ const STRENGTH_M: f32 = 8_000.0;
 /// What the map reads, on the tectonic raster.
 pub struct Surface {
     /// Height without the map's own detail, m.
-    height: Field<f32>,
+    pub height: Field<f32>,
     /// Its slope towards east and south.
     slope: [Field<f32>; 2],
     /// Height that young mountains have over the land around them, m.
     mountain: Field<f32>,
     /// Continental share.
-    kind: Field<f32>,
+    pub kind: Field<f32>,
     /// Age of the crust, My.
     age: Field<f32>,
     /// Crust, km.
@@ -109,21 +109,14 @@ impl Surface {
         }
     }
 
-    /// Reads the surface onto a map: one field a layer.
-    pub fn read(
-        &self,
-        map: Grid,
-        warp: &Warp,
-        params: &PlatesParams,
-        sea_m: f64,
-        key: Key,
-    ) -> Vec<(Layer, Field<f32>)> {
-        let detail = Detail::new(map, params, sea_m, key);
+    /// Reads the surface onto a map: one field a layer, heights with the detail that the map's cells resolve.
+    pub fn read(&self, warp: &Warp, detail: &Detail) -> Vec<(Layer, Field<f32>)> {
+        let map = detail.plains.map;
         let mut readings = vec![Reading::default(); map.cells()];
         for_each_row(&mut readings, map.width, |y, row| {
             let mut ridges = detail.ridges.sampler();
             for (x, reading) in row.iter_mut().enumerate() {
-                *reading = self.read_cell(map.center_m(x, y).into(), warp, &detail, &mut ridges);
+                *reading = self.read_cell(map.center_m(x, y).into(), warp, detail, &mut ridges);
             }
         });
         type Part = fn(&Reading) -> f32;
@@ -162,9 +155,6 @@ impl Surface {
         let slope = DVec2::new(rows[0].x * slope.x + rows[1].x * slope.y, rows[0].y * slope.x + rows[1].y * slope.y);
         let kind = linear(&self.kind, q);
         let mountain = linear(&self.mountain, q);
-        let i = self.cell_at(q);
-        let (class, distance) = (&self.boundary.0, &self.boundary.1);
-        let near = (distance.data[i] as f64) < detail.border_m;
         Reading {
             height: (base + detail.height(at_m, base, slope, [kind, mountain], ridges)) as f32,
             plate: self.plate_at(q) as f32,
@@ -172,8 +162,30 @@ impl Surface {
             age: linear(&self.age, q).max(0.0) as f32,
             thickness: linear(&self.thickness, q) as f32,
             uplift: linear(&self.uplift, q) as f32,
-            boundary: if near { class[i] as f32 } else { 0.0 },
+            boundary: self.boundary_at(q, detail.plains.border_m),
         }
+    }
+
+    /// Reads onto a map what the surface knows besides its height; `reads_m` are the points of the plates it reads.
+    pub fn read_crust(&self, reads_m: &[Field<f32>; 2], border_m: f64) -> Vec<(Layer, Field<f32>)> {
+        let map = reads_m[0].grid;
+        let at = |x: usize, y: usize| self.at(DVec2::new(reads_m[0].at(x, y) as f64, reads_m[1].at(x, y) as f64));
+        let part =
+            |layer: Layer, f: &(dyn Fn([f64; 2]) -> f32 + Sync)| (layer, Field::from_fn(map, |x, y| f(at(x, y))));
+        vec![
+            part(Layer::PlateId, &|q| self.plate_at(q) as f32),
+            part(Layer::CrustKind, &|q| linear(&self.kind, q).clamp(0.0, 1.0) as f32),
+            part(Layer::CrustAge, &|q| linear(&self.age, q).max(0.0) as f32),
+            part(Layer::CrustThickness, &|q| linear(&self.thickness, q) as f32),
+            part(Layer::BoundaryKind, &|q| self.boundary_at(q, border_m)),
+        ]
+    }
+
+    /// Class of the border nearest to a point, 0 where it is further than `border_m`.
+    fn boundary_at(&self, q: [f64; 2], border_m: f64) -> f32 {
+        let i = self.cell_at(q);
+        let (class, distance) = (&self.boundary.0, &self.boundary.1);
+        if (distance.data[i] as f64) < border_m { class[i] as f32 } else { 0.0 }
     }
 
     fn cell_at(&self, q: [f64; 2]) -> usize {
@@ -182,8 +194,19 @@ impl Surface {
         g.index(clamp(q[0], g.width), clamp(q[1], g.height))
     }
 
+    /// A point of the plates' square from its corner, m.
+    pub fn at(&self, at_m: DVec2) -> [f64; 2] {
+        (at_m - self.corner_m).into()
+    }
+
+    /// Whether this is sea floor made in the last so many My.
+    pub fn is_newer(&self, q: [f64; 2], myr: f64) -> bool {
+        let i = self.cell_at(q);
+        (self.age.data[i] as f64) < myr && self.kind.data[i] < 0.5
+    }
+
     /// The owner with most of the bilinear weight around a point: borders smoother than the raster's steps.
-    fn plate_at(&self, q: [f64; 2]) -> u8 {
+    pub fn plate_at(&self, q: [f64; 2]) -> u8 {
         let g = &self.height.grid;
         let half = 0.5 * g.cell_m;
         let corners = [[-half, -half], [half, -half], [-half, half], [half, half]]
@@ -293,7 +316,7 @@ fn boundary_layer(grid: Grid, borders: &[BorderCell]) -> (Vec<u8>, Field<f32>) {
 }
 
 /// Smoothed by three box passes either way, close to a Gaussian of this standard deviation.
-fn blurred(field: &Field<f32>, deviation_m: f64) -> Field<f32> {
+pub fn blurred(field: &Field<f32>, deviation_m: f64) -> Field<f32> {
     // Three boxes of 2r + 1 cells have variance (2r + 1)² - 1, divided by 4.
     let cells = deviation_m / field.grid.cell_m;
     let radius = (((4.0 * cells * cells + 1.0).sqrt() - 1.0) / 2.0).round() as usize;
@@ -324,23 +347,56 @@ fn box_rows_transposed(field: &Field<f32>, radius: usize) -> Field<f32> {
     Field::from_fn(field.grid, |x, y| rows[x * n + y])
 }
 
-/// Detail finer than the tectonic cells: plains and sea floor by fractal sums, mountains by ridges and gullies.
-struct Detail {
-    plains: Octaves,
+/// Ground finer than the tectonic cells where nothing was raised: plains, uplands and the hills of the sea floor.
+pub struct Plains {
+    octaves: Octaves,
+    map: Grid,
+    sea_m: f64,
+    /// How wide a border is drawn, m.
+    pub border_m: f64,
+}
+
+impl Plains {
+    /// For a map with the sea at `sea_m`.
+    pub fn new(map: Grid, params: &PlatesParams, sea_m: f64, key: Key) -> Self {
+        let belt_m = params.belt_km * 1e3;
+        Self {
+            octaves: Fbm::new(2.0 * belt_m, 0.7).octaves(key.named("plains"), map.cell_m),
+            map,
+            sea_m,
+            border_m: map.cell_m.max(belt_m / 12.0),
+        }
+    }
+
+    /// What is added to a base height on crust that is continental to the share `kind`, m.
+    pub fn height(&self, at_m: [f64; 2], base: f64, kind: f64) -> f64 {
+        self.octaves.value(at_m) * self.rolling(base, kind)
+    }
+
+    /// Half the height of its hills, m: low ground near the sea is smooth, uplands are rolling, the deep floor has its hills.
+    fn rolling(&self, base: f64, kind: f64) -> f64 {
+        let above = base - self.sea_m;
+        let upland = smoothstep(above / 1200.0);
+        let floor = smoothstep(-above / 3000.0) * (1.0 - kind).clamp(0.0, 1.0);
+        55.0 + 130.0 * upland + 80.0 * floor
+    }
+}
+
+/// Detail finer than the tectonic cells: plains, and mountains by ridges and gullies.
+pub struct Detail {
+    plains: Plains,
     ridges: Octaves,
     gullies: Gullies,
     gully_key: Key,
-    cell_m: f64,
-    sea_m: f64,
     ruggedness: f64,
-    border_m: f64,
 }
 
 impl Detail {
-    fn new(map: Grid, params: &PlatesParams, sea_m: f64, key: Key) -> Self {
+    /// For a map with the sea at `sea_m`.
+    pub fn new(map: Grid, params: &PlatesParams, sea_m: f64, key: Key) -> Self {
         let belt_m = params.belt_km * 1e3;
         Self {
-            plains: Fbm::new(2.0 * belt_m, 0.7).octaves(key.named("plains"), map.cell_m),
+            plains: Plains::new(map, params, sea_m, key),
             ridges: Fbm::new(0.9 * belt_m, 0.9).octaves(key.named("ridges"), map.cell_m),
             gullies: Gullies {
                 wavelength_m: (0.3 * belt_m).min(WIDEST_VALLEY_M),
@@ -349,21 +405,14 @@ impl Detail {
                 half_slope: 0.11,
             },
             gully_key: key.named("gullies"),
-            cell_m: map.cell_m,
-            sea_m,
             ruggedness: params.ruggedness,
-            border_m: map.cell_m.max(params.belt_km * 1e3 / 12.0),
         }
     }
 
     fn height(&self, at_m: DVec2, base: f64, slope: DVec2, [kind, mountain]: [f64; 2], ridges: &mut Sampler) -> f64 {
         let at = at_m.into();
-        // Low ground near the sea is smooth, uplands are rolling, the deep floor has its hills.
-        let above = base - self.sea_m;
-        let upland = smoothstep(above / 1200.0);
-        let floor = smoothstep(-above / 3000.0) * (1.0 - kind).clamp(0.0, 1.0);
-        let (plain, plain_slope) = self.plains.gradient(at);
-        let rolling = 55.0 + 130.0 * upland + 80.0 * floor;
+        let rolling = self.plains.rolling(base, kind);
+        let (plain, plain_slope) = self.plains.octaves.gradient(at);
         let mut height = plain * rolling;
         let rough = (mountain.max(0.0) / 2500.0).min(1.4) * self.ruggedness;
         if rough > 0.02 {
@@ -371,11 +420,11 @@ impl Detail {
             height += rough * 1100.0 * (ridges.ridged(at) - 0.7);
         }
         // Valleys are cut above the sea, the deeper the higher the ground.
-        let cut = smoothstep((above + 100.0) / 1500.0) * self.ruggedness;
+        let cut = smoothstep((base - self.plains.sea_m + 100.0) / 1500.0) * self.ruggedness;
         if cut > 0.01 {
             // The rolling ground turns the valleys, so that they do not run in ranks.
             let slope = slope + DVec2::from(plain_slope) * (0.5 * rolling);
-            height += cut * self.gullies.value(self.gully_key, at, slope.into(), self.cell_m);
+            height += cut * self.gullies.value(self.gully_key, at, slope.into(), self.plains.map.cell_m);
         }
         height
     }

@@ -4,6 +4,7 @@
 //! steps and keeps checkpoints from which it goes on; shows frames to sinks. It draws nothing.
 
 mod checkpoint;
+mod group;
 mod run;
 
 pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints, EVERY};

@@ -3,14 +3,15 @@
 use std::{sync::atomic::AtomicBool, time::Instant};
 
 use crate::{
-    process::{Context, Process, ProcessError, State, Step},
+    process::{ProcessError, State, Step},
     recipe::{Plan, Stage},
-    world::{Layer, Matter, World},
+    world::{Layer, World},
 };
 
 use super::{
     Moment, Sink, StageRecord,
     checkpoint::{Checkpoint, CheckpointError, Checkpoints, Position},
+    group::{Failure, Group},
 };
 
 /// Why a run stopped.
@@ -119,91 +120,86 @@ impl<'a> Timeline<'a> {
                 from = Position { stage: index, began_yr: world.time_yr, ..Position::default() };
             }
             let from = std::mem::take(&mut from);
-            let record = self.stage(stage, &mut world, (from, state.take()), &mut watch)?;
-            self.records.push(record);
+            let records = self.stage(stage, &mut world, (from, state.take()), &mut watch)?;
+            self.records.extend(records);
         }
         // A world whose stages were all skipped still has a ground.
         world.layer_mut(Layer::Bedrock);
         Ok(world)
     }
 
-    /// Runs a stage from where it is to its end.
+    /// Runs a stage, and those coupled to it, from where it is to its end.
     fn stage(
         &mut self,
         stage: &Stage,
         world: &mut World,
         (mut at, state): (Position, Option<State>),
         watch: &mut Watch,
-    ) -> Result<StageRecord, TimelineError> {
-        let context = Context::new(self.plan.world.seed, &stage.key, self.cancel);
-        let failed = |step: u64| move |error: ProcessError| stopped(stage, step, error);
+    ) -> Result<Vec<StageRecord>, TimelineError> {
         let (started, before) = (Instant::now(), at.seconds);
-        let mut process = stage.build().map_err(failed(at.step))?;
+        let mut group = Group::new(stage, self.plan.world.seed, self.cancel).map_err(|e| stopped(at.step, e))?;
         match state {
-            Some(state) => process.restore(state, &context).map_err(failed(at.step))?,
-            None => world.ledger.open(&stage.key, Matter::Rock, world.rock_m3()),
+            Some(state) => group.restore(state).map_err(|e| stopped(at.step, e))?,
+            None => group.open(world),
         }
         watch.tell(at.step, at.done, world);
         while at.done < 1.0 {
             at.seconds = before + started.elapsed().as_secs_f64();
-            let taken = context.check().and_then(|()| process.step(world, &context));
-            if let Err(ProcessError::Cancelled) = taken {
-                self.keep(world, &at, process.as_ref())?;
+            let taken = group.step(world);
+            if let Err(Failure { why: ProcessError::Cancelled, .. }) = taken {
+                self.keep(world, &at, &group)?;
             }
-            let Step { done, elapsed_yr } = taken.map_err(failed(at.step + 1))?;
+            let Step { done, elapsed_yr } = taken.map_err(|e| stopped(at.step + 1, e))?;
             (at.step, at.done) = (at.step + 1, done);
             world.time_yr += elapsed_yr;
-            find_non_finite(stage, at.step, process.writes(), world)?;
-            watch.show(process.as_mut(), world, &context, &at).map_err(|stop| match stop {
-                Stop::Process(error) => stopped(stage, at.step, error),
-                Stop::Sink(why) => TimelineError::Sink(why),
-            })?;
+            find_non_finite(stage, at.step, group.writes(), world)?;
+            watch.show(&mut group, world, &at)?;
             if done < 1.0 {
                 watch.tell(at.step, done, world);
                 if self.checkpoints.as_ref().is_some_and(|checkpoints| checkpoints.due()) {
                     at.seconds = before + started.elapsed().as_secs_f64();
-                    self.keep(world, &at, process.as_ref())?;
+                    self.keep(world, &at, &group)?;
                 }
             }
         }
         // What the stage published last may be bad as well.
-        find_non_finite(stage, at.step, process.writes(), world)?;
-        world.ledger.close(&stage.key, Matter::Rock, world.rock_m3());
+        find_non_finite(stage, at.step, group.writes(), world)?;
+        group.close(world);
         watch.tell(at.step, 1.0, world);
-        Ok(StageRecord {
-            stage: stage.key.clone(),
-            kind: stage.kind.kind.to_owned(),
-            steps: at.step,
-            seconds: before + started.elapsed().as_secs_f64(),
-            elapsed_yr: world.time_yr - at.began_yr,
-        })
+        let seconds = before + started.elapsed().as_secs_f64();
+        Ok(group.records(at.step, seconds, world.time_yr - at.began_yr))
     }
 
     /// Keeps a checkpoint, where there is anything yet to be kept.
-    fn keep(&mut self, world: &World, at: &Position, process: &dyn Process) -> Result<(), TimelineError> {
+    fn keep(&mut self, world: &World, at: &Position, group: &Group) -> Result<(), TimelineError> {
         let Some(checkpoints) = &mut self.checkpoints else { return Ok(()) };
         if at.stage == 0 && at.step == 0 {
             return Ok(());
         }
         let position = Position { records: self.records.clone(), ..at.clone() };
         // A stage that has not begun begins anew.
-        let state = (at.step > 0).then(|| process.save());
+        let state = (at.step > 0).then(|| group.save());
         Ok(checkpoints.save(world, &position, state.as_ref())?)
     }
 }
 
-fn stopped(stage: &Stage, step: u64, error: ProcessError) -> TimelineError {
-    match error {
+fn stopped(step: u64, Failure { stage, why }: Failure) -> TimelineError {
+    match why {
         ProcessError::Cancelled => TimelineError::Cancelled,
-        error => TimelineError::Process { stage: stage.label.clone(), step, why: error.to_string() },
+        why => TimelineError::Process { stage: stage.label.clone(), step, why: why.to_string() },
     }
 }
 
-/// Looks only at what the process may have written; what it did not touch was looked at before.
-fn find_non_finite(stage: &Stage, step: u64, written: &[Layer], world: &World) -> Result<(), TimelineError> {
+/// Looks only at what the stage may have written; what it did not touch was looked at before.
+fn find_non_finite(
+    stage: &Stage,
+    step: u64,
+    written: impl Iterator<Item = Layer>,
+    world: &World,
+) -> Result<(), TimelineError> {
     use rayon::prelude::*;
     const RUN: usize = 1 << 14;
-    for field in written.iter().filter(|layer| !layer.derived()).filter_map(|&layer| world.layer(layer)) {
+    for field in written.filter(|layer| !layer.derived()).filter_map(|layer| world.layer(layer)) {
         if field.data.par_chunks(RUN).any(|run| !run.iter().all(|v| v.is_finite())) {
             let Some((layer, x, y)) = world.first_non_finite() else { continue };
             let stage = stage.label.clone();
@@ -211,11 +207,6 @@ fn find_non_finite(stage: &Stage, step: u64, written: &[Layer], world: &World) -
         }
     }
     Ok(())
-}
-
-enum Stop {
-    Process(ProcessError),
-    Sink(String),
 }
 
 /// Those who look on while a stage runs.
@@ -238,20 +229,14 @@ impl<'w> Watch<'w, '_> {
     }
 
     /// Publishes where a frame is wanted or the stage is over, and hands the frame on.
-    fn show(
-        &mut self,
-        process: &mut dyn Process,
-        world: &mut World,
-        context: &Context,
-        at: &Position,
-    ) -> Result<(), Stop> {
+    fn show(&mut self, group: &mut Group, world: &mut World, at: &Position) -> Result<(), TimelineError> {
         let moment = self.moment(at.step, at.done, world);
         let wanting: Vec<bool> = self.sinks.iter_mut().map(|sink| sink.wants(&moment)).collect();
         if moment.stage_over() || wanting.contains(&true) {
-            process.publish(world, context).map_err(Stop::Process)?;
+            group.publish(world).map_err(|e| stopped(at.step, e))?;
         }
         for (sink, _) in self.sinks.iter_mut().zip(wanting).filter(|(_, wants)| *wants) {
-            sink.take(world, &moment).map_err(Stop::Sink)?;
+            sink.take(world, &moment).map_err(TimelineError::Sink)?;
         }
         Ok(())
     }
@@ -347,10 +332,49 @@ mod tests {
         assert!(world.layer(Layer::Sediment).is_none());
     }
 
+    const PLATES: &str = "[[stage]]\nkind = \"plates\"\nduration_myr = 2\ncells = 64\nsteps = 6\n";
+    const COUPLED: &str = "[[stage]]\nkind = \"drip\"\ncoupled = true\n";
+
     #[test]
     fn a_run_goes_on_from_any_step_to_the_same_bits() {
-        let text = format!("{TEXT}[[stage]]\nkind = \"plates\"\nduration_myr = 2\ncells = 64\nsteps = 6\n");
-        let (plan, cancel) = (plan(&text), AtomicBool::new(false));
+        goes_on(&format!("{TEXT}{PLATES}"));
+    }
+
+    #[test]
+    fn stages_that_step_in_turn_go_on_to_the_same_bits() {
+        goes_on(&format!("{TEXT}{PLATES}{COUPLED}"));
+    }
+
+    #[test]
+    fn the_books_of_stages_that_take_turns_close_each() {
+        let text = format!("[world]\nsize = 48\n{PLATES}{COUPLED}");
+        let (plan, stay) = (plan(&text), AtomicBool::new(false));
+        let mut timeline = Timeline::new(&plan, &stay);
+        let world = timeline.run(&mut [], &mut |_| ()).unwrap();
+        let kinds: Vec<_> = timeline.records().iter().map(|r| (r.kind.as_str(), r.steps, r.elapsed_yr)).collect();
+        assert_eq!(kinds, [("plates", 6, 2e6), ("drip", 6, 2e6)]);
+        let drip = world.ledger.account("drip#1", crate::world::Matter::Rock).unwrap();
+        // 60 m over half the map.
+        let want = 60.0 * 0.5 * world.grid.cells() as f64 * world.grid.cell_area_m2();
+        assert!((drip.came_in_m3 / want - 1.0).abs() < 1e-6, "{drip:?}");
+        for (stage, matter, account) in world.ledger.accounts() {
+            assert!(account.residual_share() < 1e-6, "{stage} {matter:?}: {account:?}");
+        }
+        // The load went with the plates, and the crust below knows of it.
+        assert!(world.layer(Layer::Sediment).unwrap().range().unwrap().1 > 50.0);
+        assert_eq!(plan.find_stage("drip"), Some(0));
+    }
+
+    #[test]
+    fn nothing_is_coupled_to_a_stage_that_cannot_lead() {
+        let text = format!("[world]\nsize = 16\n[[stage]]\nkind = \"probe\"\n{COUPLED}");
+        let source = Source { name: "t".into(), file: "t.toml".into(), folder: PathBuf::new(), text };
+        let error = Plan::new(&source, &Overrides::default()).unwrap_err().to_string();
+        assert!(error.starts_with("t.toml:5: stage 'drip': coupled = true"), "{error}");
+    }
+
+    fn goes_on(text: &str) {
+        let (plan, cancel) = (plan(text), AtomicBool::new(false));
         let mut steps = Vec::new();
         let whole = Timeline::new(&plan, &cancel).run(&mut [], &mut |m| steps.push((m.stage, m.step))).unwrap();
         steps.dedup();

@@ -76,6 +76,11 @@ impl Ledger {
         self.account_mut(stage, matter).end_m3 = m3;
     }
 
+    /// Adds what the stock changed by in one turn of a stage that takes turns with others.
+    pub fn turn(&mut self, stage: &str, matter: Matter, gained_m3: f64) {
+        self.account_mut(stage, matter).end_m3 += gained_m3;
+    }
+
     /// All accounts, by stage and matter.
     pub fn accounts(&self) -> impl Iterator<Item = (&str, Matter, &Account)> {
         self.accounts.iter().map(|((stage, matter), account)| (stage.as_str(), *matter, account))

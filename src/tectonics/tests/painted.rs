@@ -66,7 +66,7 @@ fn first_step(entries: &[[f64; 2]]) -> Result<World, String> {
     let stay = AtomicBool::new(false);
     let context = Context::new(1, "plates", &stay);
     let mut world = World::new(Grid::new(32, 32, 1_000e3, Edges::Open), 0.0);
-    let mut process = params.process(Placement::default(), Some(1_000));
+    let mut process = params.process(Placement::default(), Some(1_000), false);
     process.fit(&world.grid).map_err(|e| e.to_string())?;
     process.step(&mut world, &context).map_err(|e| e.to_string())?;
     process.publish(&mut world, &context).map_err(|e| e.to_string())?;
