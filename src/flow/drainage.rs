@@ -2,14 +2,15 @@
 
 use crate::grid::Grid;
 
-use super::{flood::flood, neighbours};
+use super::Router;
 
 /// Every cell's way to an outlet.
 #[derive(Clone, Debug)]
 pub struct Drainage {
     /// The raster.
     pub grid: Grid,
-    /// The cell that each cell drains to, the steepest way down over the filled surface; its own index at an outlet.
+    /// The cell that each cell drains to, the steepest way down, out of a depression towards
+    /// its lowest pass; its own index at an outlet.
     pub receiver: Vec<u32>,
     /// All cells, each after its receiver.
     pub order: Vec<u32>,
@@ -20,22 +21,14 @@ pub struct Drainage {
 impl Drainage {
     /// Routes a surface to its outlets. Ties go to the neighbour that comes first in [`super::STEPS`].
     pub fn of(grid: Grid, height_m: &[f64], outlet: &[bool]) -> Self {
-        let flood = flood(grid, height_m, outlet);
-        let mut receiver = flood.parent;
-        for i in 0..receiver.len() {
-            if receiver[i] as usize == i {
-                continue;
-            }
-            let z = flood.surface_m[i];
-            let mut steepest = 0.0;
-            for (j, length) in neighbours(grid, i) {
-                let drop = (z - flood.surface_m[j]) / length;
-                if drop > steepest {
-                    (steepest, receiver[i]) = (drop, j as u32);
-                }
-            }
+        let mut router = Router::new(grid);
+        router.route(height_m, outlet);
+        let mut surface_m = height_m.to_vec();
+        for (i, level) in router.flooded(height_m) {
+            surface_m[i] = level;
         }
-        Self { grid, receiver, order: flood.order, surface_m: flood.surface_m }
+        let receiver = (0..grid.cells()).map(|i| router.receiver(i) as u32).collect();
+        Self { grid, receiver, order: router.upward().collect(), surface_m }
     }
 
     /// Number of cells.
@@ -94,7 +87,7 @@ impl Drainage {
 mod tests {
     use super::*;
     use crate::{
-        flow::outlets,
+        flow::{flood::flood, neighbours, outlets},
         grid::{Edges, Field},
     };
 
@@ -126,6 +119,23 @@ mod tests {
             let area = d.area_m2();
             let out: f64 = (0..d.len()).filter(|&i| d.is_outlet(i)).map(|i| area[i]).sum();
             assert_eq!(out, 33.0 * 33.0, "{edges:?}");
+        }
+    }
+
+    #[test]
+    fn levels_are_those_of_the_flood() {
+        // Taller than a strip, with pits everywhere, and long flats where heights are coarse.
+        for (size, coarse) in [(33, 1.0), (150, 1.0), (300, 1.0), (150, 200.0), (150, 2000.0)] {
+            for edges in [Edges::Open, Edges::Wrap] {
+                let field = rough(size, edges).map(|v| (v / coarse).floor());
+                let height: Vec<f64> = field.data.iter().map(|&v| v as f64).collect();
+                let outlet = outlets(&field, f64::MIN);
+                let d = Drainage::of(field.grid, &height, &outlet);
+                assert_eq!(d.surface_m, flood(field.grid, &height, &outlet).surface_m, "{size} {edges:?} {coarse}");
+                let mut order = d.order.clone();
+                order.sort_unstable();
+                assert!(order.into_iter().eq(0..d.len() as u32));
+            }
         }
     }
 

@@ -1,16 +1,20 @@
 //! Where water goes over a surface: depressions filled, every cell's receiver, and what gathers along the way.
 //!
-//! Numerics only: this room knows heights, not worlds. Heights are `f64`, since a fill of `f32` stalls on long flats.
+//! Numerics only: this room knows heights, not worlds. [`Drainage`] is one surface's answer, plain to read; [`Router`] is the
+//! same for solvers that ask at every step. Heights are `f64`, since a fill of `f32` stalls on long flats.
 
+mod compass;
 mod drainage;
+#[cfg(test)]
 mod flood;
+mod router;
+mod spill;
 
+pub use compass::{Compass, LENGTHS, STEPS, opposite};
 pub use drainage::Drainage;
+pub use router::{ROOT, Router};
 
 use crate::grid::{Edges, Field, Grid};
-
-/// The eight steps to a neighbour, in the order that decides ties: north-west first, row by row.
-pub const STEPS: [(isize, isize); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 /// The cells where water leaves: everything below the sea, and the rim of an open map. A map that has none of either
 /// drains to its lowest cell.
@@ -34,16 +38,5 @@ pub fn outlets(height: &Field<f32>, sea_level_m: f64) -> Vec<bool> {
 
 /// The neighbours of a cell that lie on the map, with the distance in cells.
 pub fn neighbours(grid: Grid, i: usize) -> impl Iterator<Item = (usize, f64)> {
-    let (x, y) = grid.cell_of(i);
-    STEPS.into_iter().filter_map(move |(dx, dy)| {
-        let next = match grid.edges {
-            Edges::Wrap => (grid.column(x, dx), grid.row(y, dy)),
-            _ => (
-                x.checked_add_signed(dx).filter(|&x| x < grid.width)?,
-                y.checked_add_signed(dy).filter(|&y| y < grid.height)?,
-            ),
-        };
-        let length = if dx != 0 && dy != 0 { std::f64::consts::SQRT_2 } else { 1.0 };
-        Some((grid.index(next.0, next.1), length)).filter(|&(j, _)| j != i)
-    })
+    Compass::new(grid).around(i).map(|(way, j)| (j, LENGTHS[way as usize]))
 }

@@ -8,6 +8,7 @@ use serde_json::Value as Json;
 
 use crate::{
     edit::ImportParams,
+    erosion::StreamPowerParams,
     process::{Placement, Process, ProcessError},
     tectonics::PlatesParams,
     terrain::Shape,
@@ -122,6 +123,9 @@ fn table() -> Vec<StageKind> {
                 Ok(import.process(setting.placement))
             })
         },
+        row("stream_power", "Rivers", "Rivers cut into rising land over geologic time.", |rivers: StreamPowerParams, setting| {
+            Ok(rivers.process(setting.placement, setting.steps))
+        }),
         #[cfg(test)]
         ground::<super::probe::ProbeParams>("probe", "Probe", "A level ground for tests."),
         #[cfg(test)]

@@ -44,6 +44,17 @@ const CASES: &[Case] = &[
     case("rmp_ridge", "mask = 'slope'\n"),
     case("rmp_graph", "blend = 'min'\n"),
     case("import", ""),
+    Case { kind: "stream_power", params: "duration_myr = 0.5\n", may_leave_out: &[Layer::Lava] },
+    Case {
+        kind: "stream_power",
+        params: "duration_myr = 0.3\nn = 2.0\nmask = 'height > 0'\n",
+        may_leave_out: &[Layer::Lava],
+    },
+    Case {
+        kind: "stream_power",
+        params: "duration_myr = 0.3\ndeposition = 1.0\nrim = 'fixed'\n",
+        may_leave_out: &[Layer::Lava],
+    },
     case("import", "blend = 'max'\nsmooth = 1.0\nhigh_m = 3000.0\nmask = 'height > 100'\n"),
 ];
 

@@ -1,0 +1,147 @@
+//! The column of rock under a solver: read as one height in `f64`, written back layer by layer, and booked.
+//!
+//! What wears away is taken from the sediment first, then from lava, then from bedrock; what is laid down is sediment. A
+//! change below what the layers can hold waits in `rest`, which belongs to the solver's state.
+
+use rayon::prelude::*;
+
+use crate::{
+    grid::{Field, Grid, for_each_row, sum_f64},
+    world::{Layer, Matter, World},
+};
+
+/// What the layers of the column could not hold yet, m.
+#[derive(Clone, Debug)]
+pub(super) struct Column {
+    rest: Field<f32>,
+}
+
+/// The layers a step changes, taken out of the world while it does.
+struct Layers {
+    bedrock: Field<f32>,
+    lava: Option<Field<f32>>,
+    sediment: Field<f32>,
+    wear: Field<f32>,
+    deposit: Field<f32>,
+}
+
+impl Column {
+    /// With nothing waiting.
+    pub(super) fn new(grid: Grid) -> Self {
+        Self { rest: Field::filled(grid, 0.0) }
+    }
+
+    /// From a saved state.
+    pub(super) fn restored(rest: Field<f32>) -> Self {
+        Self { rest }
+    }
+
+    /// To be saved.
+    pub(super) fn rest(&self) -> &Field<f32> {
+        &self.rest
+    }
+
+    /// Reads the height of the ground, m.
+    pub(super) fn read(&self, world: &World, height_m: &mut Vec<f64>) {
+        height_m.clear();
+        height_m.extend(self.rest.data.iter().map(|&v| v as f64));
+        for part in Layer::COLUMN.iter().filter_map(|&layer| world.layer(layer)) {
+            for_each_row(height_m, world.grid.width, |y, row| {
+                for (h, &v) in row.iter_mut().zip(part.row(y)) {
+                    *h += v as f64;
+                }
+            });
+        }
+    }
+
+    /// Writes the ground back. `raised_m` is what it would be by uplift alone, `height_m` what it is; what was lifted
+    /// joins the bedrock. Books what came in by uplift and left over the rim, both in m³.
+    pub(super) fn write(&mut self, world: &mut World, change: &Change, stage: &str) {
+        let mut take = |layer: Layer| {
+            world.layer_mut(layer);
+            world.remove_layer(layer).unwrap_or_else(|| Field::filled(world.grid, 0.0))
+        };
+        let mut layers = Layers {
+            bedrock: take(Layer::Bedrock),
+            lava: None,
+            sediment: take(Layer::Sediment),
+            wear: take(Layer::Wear),
+            deposit: take(Layer::Deposit),
+        };
+        layers.lava = world.remove_layer(Layer::Lava);
+        let waited = sum_f64(&self.rest.data);
+        self.spread(&mut layers, change);
+        let waiting = (sum_f64(&self.rest.data) - waited) * world.grid.cell_area_m2();
+        for (layer, field) in [
+            (Layer::Bedrock, layers.bedrock),
+            (Layer::Sediment, layers.sediment),
+            (Layer::Wear, layers.wear),
+            (Layer::Deposit, layers.deposit),
+        ] {
+            world.set_layer(layer, field);
+        }
+        if let Some(lava) = layers.lava {
+            world.set_layer(Layer::Lava, lava);
+        }
+        // What waits has not come in or left yet.
+        for gained in [change.lifted_m3, -change.left_m3 - waiting] {
+            if gained >= 0.0 {
+                world.ledger.book_in(stage, Matter::Rock, gained);
+            } else {
+                world.ledger.book_out(stage, Matter::Rock, -gained);
+            }
+        }
+    }
+
+    fn spread(&mut self, layers: &mut Layers, change: &Change) {
+        let width = self.rest.grid.width.max(1);
+        let none = vec![0.0f32; if layers.lava.is_some() { 0 } else { width }];
+        let (mut own, mut empty) = (layers.lava.as_mut(), Vec::new());
+        let lava: Vec<&mut [f32]> = match &mut own {
+            Some(lava) => lava.data.chunks_mut(width).collect(),
+            None => {
+                empty.resize_with(self.rest.grid.height, || none.clone());
+                empty.iter_mut().map(Vec::as_mut_slice).collect()
+            }
+        };
+        (layers.bedrock.data.par_chunks_mut(width), layers.sediment.data.par_chunks_mut(width), lava)
+            .into_par_iter()
+            .zip((
+                layers.wear.data.par_chunks_mut(width),
+                layers.deposit.data.par_chunks_mut(width),
+                self.rest.data.par_chunks_mut(width),
+            ))
+            .enumerate()
+            .for_each(|(y, ((bedrock, sediment, lava), (wear, deposit, rest)))| {
+                let (height, raised) = (&change.height_m[y * width..], &change.raised_m[y * width..]);
+                for x in 0..bedrock.len() {
+                    let gained = height[x] - raised[x];
+                    if gained > 0.0 {
+                        sediment[x] = (sediment[x] as f64 + gained) as f32;
+                        deposit[x] = (deposit[x] as f64 + gained) as f32;
+                    } else if gained < 0.0 {
+                        let loose = (sediment[x] as f64).min(-gained).max(0.0);
+                        sediment[x] = (sediment[x] as f64 - loose) as f32;
+                        let frozen = (lava[x] as f64).min(-gained - loose).max(0.0);
+                        lava[x] = (lava[x] as f64 - frozen) as f32;
+                        wear[x] = (wear[x] as f64 - gained) as f32;
+                    }
+                    let solid = height[x] - (sediment[x] as f64 + lava[x] as f64);
+                    bedrock[x] = solid as f32;
+                    rest[x] = (solid - bedrock[x] as f64) as f32;
+                }
+            });
+    }
+}
+
+/// What a step did.
+pub(super) struct Change<'a> {
+    /// Ground after uplift alone, m.
+    pub(super) raised_m: &'a [f64],
+    /// Ground after all, m.
+    pub(super) height_m: &'a [f64],
+    /// Came in by uplift, m³.
+    pub(super) lifted_m3: f64,
+    /// Left the map, m³.
+    pub(super) left_m3: f64,
+}

@@ -1,0 +1,383 @@
+//! Stream power on plain heights: routes, erodes, and carries what it took to lakes, sea and rim. Knows no world.
+//!
+//! `∂z/∂t = U − K·Q^m·S^n + (G/A)·q_s + D·∇²z`, where `Q` is catchment area times rain over a metre a year. Uplift first,
+//! then the river network implicitly from the outlets up (Braun and Willett 2013), then diffusion.
+//!
+//! A cell that ends below its receiver's water, in a lake or on ground that rose too little, keeps its ground: it is not
+//! eroded, and the water above it is the level that its donors fall to. So a lake falls as its outlet is cut. A lake takes the
+//! sediment that arrives until it is full.
+
+use rayon::prelude::*;
+
+use crate::{
+    flow::{LENGTHS, ROOT, Router},
+    grid::{Grid, sum_rows},
+};
+
+use super::{
+    Rim,
+    base::{Base, BaseLevel},
+    coast,
+    law::settle,
+};
+use crate::erosion::diffusion::{diffuse, either};
+
+/// Rain for which discharge equals catchment area, so that erodibility means the same for both; mm/yr.
+const REFERENCE_RAIN_MM_PER_YR: f64 = 1000.0;
+/// Rounds after which deposition has to have settled.
+const MOST_ROUNDS: usize = 30;
+/// Change of height in a round below which it has, m.
+const SETTLED_M: f64 = 1e-3;
+
+/// Constants of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law {
+    /// `K`, in m^(1-2m) a year.
+    pub erodibility: f64,
+    /// `m`.
+    pub area_exponent: f64,
+    /// `n`.
+    pub slope_exponent: f64,
+    /// `G`: share of the load that is laid down again, over catchment area.
+    pub deposition: f64,
+    /// Steepest slope to a receiver, rise over run.
+    pub steepest: f64,
+    /// `D` on land, m²/yr.
+    pub diffusivity_m2_per_yr: f64,
+    /// `K_m` in the sea, m²/yr.
+    pub marine_diffusivity_m2_per_yr: f64,
+    /// What the rim of an open map is.
+    pub rim: Rim,
+    /// Whether uplift moves base levels too.
+    pub lifts_base: bool,
+}
+
+/// What acts on the land during a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Forcing<'a> {
+    /// Height of the sea, m.
+    pub sea_level_m: f64,
+    /// Uplift, mm/yr.
+    pub uplift_mm_per_yr: Option<&'a [f32]>,
+    /// Rain, mm/yr, where there is a map of it.
+    pub rain_mm_per_yr: Option<&'a [f32]>,
+    /// Rain elsewhere, mm/yr.
+    pub uniform_rain_mm_per_yr: f64,
+    /// Share of the erodibility that each cell has.
+    pub ease: Option<&'a [f32]>,
+}
+
+/// What a step moved, as thickness summed over cells, m.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moved {
+    /// Came in by uplift, less what sank.
+    pub lifted_m: f64,
+    /// Left the map.
+    pub left_m: f64,
+}
+
+/// The solver's buffers over one raster.
+pub struct Carver {
+    router: Router,
+    base: BaseLevel,
+    /// What gathers on the way down: water in m² of catchment.
+    water_m2: Vec<f64>,
+    /// Share of a drop that stays, or the ratio of the law where it is not linear.
+    ratio: Vec<f64>,
+    /// Ground after uplift, m.
+    raised_m: Vec<f64>,
+    /// Ground and the water on it, m.
+    surface_m: Vec<f64>,
+    /// Sediment on its way; where it ends, what was laid down.
+    load_m: Vec<f64>,
+}
+
+impl Carver {
+    /// A solver over `grid`.
+    pub fn new(grid: Grid) -> Self {
+        let zeros = || vec![0.0; grid.cells()];
+        Self {
+            router: Router::new(grid),
+            base: BaseLevel::default(),
+            water_m2: zeros(),
+            ratio: zeros(),
+            raised_m: zeros(),
+            surface_m: zeros(),
+            load_m: zeros(),
+        }
+    }
+
+    /// The routing of the last step.
+    pub fn router(&self) -> &Router {
+        &self.router
+    }
+
+    /// Ground of the last step after uplift alone, m.
+    pub fn raised_m(&self) -> &[f64] {
+        &self.raised_m
+    }
+
+    /// One step of `years`: `height_m` becomes the ground after it.
+    pub fn step(&mut self, law: &Law, forcing: &Forcing, height_m: &mut Vec<f64>, years: f64) -> Moved {
+        self.route(law, forcing, height_m);
+        self.gather_water(forcing);
+        let lifted_m = self.lift(law, forcing, height_m, years);
+        self.weigh(law, forcing, years);
+        self.erode(law, forcing, height_m, years);
+        let left_m = self.carry(law, forcing, height_m, years);
+        let left_m = left_m + self.creep(law, forcing, height_m, years);
+        Moved { lifted_m, left_m }
+    }
+
+    fn grid(&self) -> Grid {
+        self.router.grid()
+    }
+
+    /// Ways over the ground and the sea.
+    fn route(&mut self, law: &Law, forcing: &Forcing, height_m: &[f64]) {
+        self.base.find(self.grid(), height_m, forcing.sea_level_m, law.rim);
+        let sea_m = forcing.sea_level_m;
+        self.surface_m.par_iter_mut().zip(height_m).for_each(|(s, &z)| *s = z.max(sea_m));
+        for &(i, base) in &self.base.edge {
+            if base == Base::Fixed {
+                self.surface_m[i] = height_m[i];
+            }
+        }
+        self.router.route(&self.surface_m, &self.base.outlet);
+    }
+
+    fn gather_water(&mut self, forcing: &Forcing) {
+        let cell_m2 = self.grid().cell_area_m2() / REFERENCE_RAIN_MM_PER_YR;
+        match forcing.rain_mm_per_yr {
+            Some(rain) => {
+                let fallen = self.water_m2.par_iter_mut().zip(rain);
+                fallen.for_each(|(water, &rain)| *water = rain as f64 * cell_m2);
+            }
+            None => self.water_m2.fill(forcing.uniform_rain_mm_per_yr * cell_m2),
+        }
+        self.router.descend(&mut self.water_m2, |_, water| *water);
+    }
+
+    /// Uplift; gives the sum of it.
+    fn lift(&mut self, law: &Law, forcing: &Forcing, height_m: &[f64], years: f64) -> f64 {
+        let Some(uplift) = forcing.uplift_mm_per_yr else {
+            self.raised_m.copy_from_slice(height_m);
+            return 0.0;
+        };
+        let (way, per_rate) = (self.router.ways(), years * 1e-3);
+        let cells = self.raised_m.par_iter_mut().zip(height_m).zip(uplift).zip(way);
+        cells.for_each(|(((raised, &z), &rate), &way)| {
+            let stays = way == ROOT && !law.lifts_base;
+            *raised = if stays { z } else { z + rate as f64 * per_rate };
+        });
+        // A mouth is no base level: it rises with the land it drains.
+        for &(i, base) in &self.base.edge {
+            if matches!(base, Base::Mouth(_)) {
+                self.raised_m[i] = height_m[i] + uplift[i] as f64 * per_rate;
+            }
+        }
+        let width = self.grid().width;
+        sum_rows(self.grid().height, |y| {
+            let row = y * width..(y + 1) * width;
+            self.raised_m[row.clone()].iter().zip(&height_m[row]).map(|(raised, z)| raised - z).sum()
+        })
+    }
+
+    /// The law's coefficient of every cell.
+    fn weigh(&mut self, law: &Law, forcing: &Forcing, years: f64) {
+        let (way, water, width) = (self.router.ways(), &self.water_m2, self.grid().width);
+        let cell_m = self.grid().cell_m;
+        let per_length = LENGTHS.map(|cells| law.erodibility * years / libm::pow(cells * cell_m, law.slope_exponent));
+        let linear = law.slope_exponent == 1.0;
+        crate::grid::for_each_row(&mut self.ratio, width, |y, row| {
+            let at = y * width;
+            for (x, ratio) in row.iter_mut().enumerate() {
+                let ease = forcing.ease.map_or(1.0, |ease| ease[at + x] as f64);
+                let strength = ease * per_length[way[at + x] as usize & 7];
+                *ratio = strength * power(water[at + x], law.area_exponent);
+                if linear && law.deposition == 0.0 {
+                    *ratio = 1.0 / (1.0 + *ratio);
+                }
+            }
+        });
+        // What stands under water is not cut.
+        let still = if linear && law.deposition == 0.0 { 1.0 } else { 0.0 };
+        for (i, _) in self.router.flooded(&self.surface_m) {
+            self.ratio[i] = still;
+        }
+    }
+
+    /// The network from its outlets up: `height_m` becomes the eroded ground, `surface_m` that with the water on it.
+    fn erode(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64], years: f64) {
+        if law.deposition > 0.0 {
+            return self.erode_and_deposit(law, forcing, height_m, years);
+        }
+        self.surface_m.copy_from_slice(&self.raised_m);
+        self.set_base(law, forcing, years);
+        let (router, ratio) = (&self.router, &self.ratio);
+        let steepest = self.steepest(law);
+        let way = router.ways();
+        if law.slope_exponent == 1.0 {
+            router.climb(&mut self.surface_m, |i, raised, below| {
+                let drop = (raised - below).max(0.0);
+                below + (drop * ratio[i]).min(steepest[way[i] as usize & 7])
+            });
+        } else {
+            router.climb(&mut self.surface_m, |i, raised, below| {
+                let settled = settle(raised, below, ratio[i], law.slope_exponent);
+                below + (settled - below).clamp(0.0, steepest[way[i] as usize & 7])
+            });
+        }
+        let ground = height_m.par_iter_mut().zip(&self.surface_m).zip(&self.raised_m);
+        ground.for_each(|((z, &surface), &raised)| *z = surface.min(raised));
+    }
+
+    /// The greatest drop to a receiver for each way, m.
+    fn steepest(&self, law: &Law) -> [f64; 8] {
+        LENGTHS.map(|cells| cells * self.grid().cell_m * law.steepest)
+    }
+
+    /// Levels of the outlets.
+    fn set_base(&mut self, law: &Law, forcing: &Forcing, years: f64) {
+        let sea_m = forcing.sea_level_m;
+        if self.base.sea {
+            let (way, surface) = (self.router.ways(), &mut self.surface_m);
+            surface.par_iter_mut().zip(way).for_each(|(s, &way)| *s = if way == ROOT { s.max(sea_m) } else { *s });
+        }
+        for &(i, base) in &self.base.edge {
+            self.surface_m[i] = match base {
+                Base::Mouth(slope) => {
+                    let above = self.raised_m[i] - sea_m;
+                    let ease = forcing.ease.map_or(1.0, |ease| ease[i] as f64);
+                    let water = self.water_m2[i];
+                    // Beyond the rim the river runs at least as far as its catchment is wide.
+                    let length = water.max(self.grid().cell_area_m2()).sqrt();
+                    let slope = slope.min(law.steepest);
+                    let rate = ease * law.erodibility * years * power(water, law.area_exponent);
+                    let cut = rate * libm::pow(slope.min(above.max(0.0) / length), law.slope_exponent);
+                    let most = above.max(0.0) * (rate / length) / (1.0 + rate / length);
+                    self.raised_m[i] - cut.min(most)
+                }
+                _ => self.raised_m[i],
+            };
+        }
+    }
+
+    /// Erosion with deposition of the river's load, `G > 0`: the load of one round is laid down in the next, until heights
+    /// stay (Yuan and others 2019).
+    fn erode_and_deposit(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64], years: f64) {
+        let mut laid = vec![0.0; height_m.len()];
+        let mut cells = vec![1.0; height_m.len()];
+        self.router.descend(&mut cells, |_, count| *count);
+        height_m.copy_from_slice(&self.raised_m);
+        for _ in 0..MOST_ROUNDS {
+            let raised = self.surface_m.par_iter_mut().zip(&self.raised_m).zip(&laid);
+            raised.for_each(|((s, &raised), &laid)| *s = raised + laid);
+            self.set_base(law, forcing, years);
+            let (router, ratio) = (&self.router, &self.ratio);
+            let (way, steepest) = (router.ways(), self.steepest(law));
+            router.climb(&mut self.surface_m, |i, raised, below| {
+                let settled = settle(raised, below, ratio[i], law.slope_exponent);
+                below + (settled - below).clamp(0.0, steepest[way[i] as usize & 7])
+            });
+            let raised = &self.raised_m;
+            let changes =
+                height_m.par_iter_mut().zip(&self.surface_m).zip(&laid).enumerate().map(|(i, ((z, &s), &laid))| {
+                    let ground = s.min(raised[i] + laid);
+                    (ground - std::mem::replace(z, ground)).abs()
+                });
+            let change = changes.reduce(|| 0.0, f64::max);
+            if change < SETTLED_M {
+                break;
+            }
+            self.gather_load(height_m);
+            // What came from above, without the cell's own, spread over its catchment.
+            let (load, surface, way) = (&self.load_m, &self.surface_m, self.router.ways());
+            laid.par_iter_mut().enumerate().for_each(|(i, laid)| {
+                let dry = surface[i] <= height_m[i] && way[i] != ROOT;
+                *laid = if dry { (law.deposition / cells[i]).min(1.0) * load[i].max(0.0) } else { 0.0 };
+            });
+        }
+    }
+
+    /// Carries what was eroded down the network. Afterwards `load_m` is, at an outlet, all that came; under a lake, what
+    /// was laid down there; elsewhere what passed.
+    fn gather_load(&mut self, height_m: &[f64]) {
+        let (raised, surface) = (&self.raised_m, &self.surface_m);
+        self.load_m.par_iter_mut().enumerate().for_each(|(i, load)| *load = raised[i] - height_m[i]);
+        self.router.descend(&mut self.load_m, |i, load| {
+            let (came, room) = (*load, surface[i] - height_m[i]);
+            if room > 0.0 {
+                let settles = came.clamp(0.0, room);
+                *load = settles;
+                came - settles
+            } else {
+                *load = came - (raised[i] - height_m[i]);
+                came
+            }
+        });
+    }
+
+    /// Lays the load down in lakes and in the sea; gives what left the map.
+    fn carry(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64], years: f64) -> f64 {
+        self.gather_load(height_m);
+        let (way, surface, load) = (self.router.ways(), &self.surface_m, &self.load_m);
+        let in_lake = |i: usize| way[i] != ROOT && surface[i] > height_m[i];
+        let laid: Vec<(usize, f64)> =
+            (0..height_m.len()).into_par_iter().filter(|&i| in_lake(i)).map(|i| (i, load[i])).collect();
+        for (i, laid) in laid {
+            height_m[i] += laid;
+        }
+        let mut left_m = 0.0;
+        for &(i, _) in &self.base.edge {
+            left_m += std::mem::take(&mut self.load_m[i]);
+        }
+        if self.base.sea {
+            left_m += self.lay_in_sea(law, forcing, height_m, years);
+        }
+        left_m
+    }
+
+    fn lay_in_sea(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64], years: f64) -> f64 {
+        let way = self.router.ways();
+        let load: Vec<f64> =
+            self.load_m.par_iter().zip(way).map(|(&load, &way)| if way == ROOT { load } else { 0.0 }).collect();
+        let mut room: Vec<f64> = height_m
+            .par_iter()
+            .zip(way)
+            .map(|(&z, &way)| if way == ROOT { (forcing.sea_level_m - z).max(0.0) } else { 0.0 })
+            .collect();
+        for &(i, _) in &self.base.edge {
+            room[i] = 0.0;
+        }
+        let spread_m2 = law.marine_diffusivity_m2_per_yr * years;
+        coast::lay(self.grid(), load, &mut room, spread_m2, height_m)
+    }
+
+    /// Hillslopes; gives what left over a rim that keeps its height.
+    fn creep(&mut self, law: &Law, forcing: &Forcing, height_m: &mut Vec<f64>, years: f64) -> f64 {
+        if law.diffusivity_m2_per_yr == 0.0 {
+            return 0.0;
+        }
+        let fixed: Vec<(usize, f64)> =
+            self.base.edge.iter().filter(|(_, base)| *base == Base::Fixed).map(|&(i, _)| (i, height_m[i])).collect();
+        let sea_m = forcing.sea_level_m;
+        let open: Vec<f32> = match forcing.ease {
+            Some(ease) => {
+                height_m.par_iter().zip(ease).map(|(&z, &ease)| if z >= sea_m { ease } else { 0.0 }).collect()
+            }
+            None => height_m.par_iter().map(|&z| if z >= sea_m { 1.0 } else { 0.0 }).collect(),
+        };
+        diffuse(self.grid(), height_m, law.diffusivity_m2_per_yr * years, &open, either);
+        let mut left_m = 0.0;
+        for (i, z) in fixed {
+            left_m += std::mem::replace(&mut height_m[i], z) - z;
+        }
+        left_m
+    }
+}
+
+/// `x^p`, with the roots that rivers mostly take made quick.
+fn power(x: f64, p: f64) -> f64 {
+    if p == 0.5 { x.sqrt() } else { libm::pow(x, p) }
+}

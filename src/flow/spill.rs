@@ -1,0 +1,217 @@
+//! Depressions by their graph (Cordonnier, Bovy and Braun 2019): every pit has a basin, basins touch at passes, and the
+//! tree of lowest passes tells where each one spills. Work is done only where pits are.
+//!
+//! The way from a pit to its pass is turned round, so that receivers stay neighbours.
+
+use super::{
+    compass::{Compass, opposite},
+    router::{PIT, ROOT},
+};
+
+/// A place where two basins touch.
+#[derive(Clone, Copy)]
+struct Pass {
+    height_m: f64,
+    /// Basin of `cell`.
+    from: u32,
+    /// Basin one step on.
+    to: u32,
+    cell: u32,
+    way: u8,
+}
+
+/// Basins of pits, numbered from 1; 0 is what drains to an outlet by itself.
+#[derive(Default)]
+pub(super) struct Spill {
+    label: Vec<u32>,
+    /// Cells of all basins, one basin after another.
+    cells: Vec<u32>,
+    /// Where the cells of basin `b` begin, at `b - 1`.
+    first: Vec<usize>,
+    /// Height to which each basin fills, m.
+    level_m: Vec<f64>,
+    passes: Vec<Pass>,
+}
+
+impl Spill {
+    /// Gives every pit a way out.
+    pub(super) fn drain(&mut self, compass: &Compass, z: &[f64], way: &mut [u8]) {
+        self.gather_basins(compass, z, way);
+        if self.basins() == 0 {
+            return;
+        }
+        self.find_passes(compass, z);
+        self.passes.sort_unstable_by(|a, b| {
+            a.height_m.total_cmp(&b.height_m).then(a.cell.cmp(&b.cell)).then(a.way.cmp(&b.way))
+        });
+        let tree = lowest_tree(&self.passes, self.basins());
+        self.spill_along(&tree, compass, way);
+    }
+
+    /// Number of pits' basins.
+    pub(super) fn basins(&self) -> usize {
+        self.first.len().saturating_sub(1)
+    }
+
+    /// Cells whose ground lies below the level of their basin, each with that level.
+    pub(super) fn flooded<'a>(&'a self, z: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
+        self.cells.iter().filter_map(move |&i| {
+            let (i, level) = (i as usize, self.level_m[self.label[i as usize] as usize]);
+            (z[i] < level).then_some((i, level))
+        })
+    }
+
+    /// Collects what drains to each pit.
+    fn gather_basins(&mut self, compass: &Compass, z: &[f64], way: &mut [u8]) {
+        for &i in &self.cells {
+            self.label[i as usize] = 0;
+        }
+        self.label.resize(z.len(), 0);
+        self.cells.clear();
+        self.first.clear();
+        self.first.push(0);
+        let width = compass.grid.width;
+        for y in 0..compass.grid.height {
+            if !way[y * width..][..width].contains(&PIT) {
+                continue;
+            }
+            for pit in y * width..(y + 1) * width {
+                if way[pit] == PIT && self.label[pit] == 0 {
+                    self.gather_basin(pit, compass, z, way);
+                }
+            }
+        }
+    }
+
+    fn gather_basin(&mut self, pit: usize, compass: &Compass, z: &[f64], way: &mut [u8]) {
+        let basin = self.first.len() as u32;
+        let mut at = self.cells.len();
+        self.label[pit] = basin;
+        self.cells.push(pit as u32);
+        while at < self.cells.len() {
+            let c = self.cells[at] as usize;
+            at += 1;
+            for (step, k) in compass.around(c) {
+                // A flat floor is one pit: its other cells are led to this one.
+                let floor = way[k] == PIT && self.label[k] == 0 && z[k] == z[pit] && z[c] == z[pit];
+                if floor {
+                    way[k] = opposite(step);
+                }
+                if floor || (way[k] == opposite(step) && self.label[k] == 0) {
+                    self.label[k] = basin;
+                    self.cells.push(k as u32);
+                }
+            }
+        }
+        self.first.push(self.cells.len());
+    }
+
+    /// The lowest pass between any two basins that touch.
+    fn find_passes(&mut self, compass: &Compass, z: &[f64]) {
+        self.passes.clear();
+        // The pass already known from the basin at hand to another one.
+        let mut known = vec![u32::MAX; self.basins() + 1];
+        for basin in 1..=self.basins() {
+            let begin = self.passes.len();
+            for &i in &self.cells[self.first[basin - 1]..self.first[basin]] {
+                for (way, j) in compass.around(i as usize) {
+                    let other = self.label[j];
+                    // Each pair is listed by the later of the two.
+                    if other as usize >= basin {
+                        continue;
+                    }
+                    let height_m = z[i as usize].max(z[j]);
+                    let pass = Pass { height_m, from: basin as u32, to: other, cell: i, way };
+                    match known[other as usize] as usize {
+                        at if at >= begin && at < self.passes.len() => {
+                            if height_m < self.passes[at].height_m {
+                                self.passes[at] = pass;
+                            }
+                        }
+                        _ => {
+                            known[other as usize] = self.passes.len() as u32;
+                            self.passes.push(pass);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Follows the tree from outside in: fills each basin to its pass, and turns the way from its pit to the pass round.
+    fn spill_along(&mut self, tree: &[Pass], compass: &Compass, way: &mut [u8]) {
+        let basins = self.basins() + 1;
+        let (mut begin, mut touching) = (vec![0u32; basins + 1], vec![0u32; 2 * tree.len()]);
+        for pass in tree {
+            begin[pass.from as usize + 1] += 1;
+            begin[pass.to as usize + 1] += 1;
+        }
+        for b in 0..basins {
+            begin[b + 1] += begin[b];
+        }
+        let mut next = begin.clone();
+        for (at, pass) in tree.iter().enumerate() {
+            for basin in [pass.from, pass.to] {
+                touching[next[basin as usize] as usize] = at as u32;
+                next[basin as usize] += 1;
+            }
+        }
+        self.level_m.clear();
+        self.level_m.resize(basins, f64::INFINITY);
+        self.level_m[0] = f64::NEG_INFINITY;
+        let mut reached = vec![0usize];
+        while let Some(basin) = reached.pop() {
+            for &at in &touching[begin[basin] as usize..begin[basin + 1] as usize] {
+                let pass = tree[at as usize];
+                let inward = pass.to as usize == basin;
+                let child = if inward { pass.from } else { pass.to } as usize;
+                if self.level_m[child] != f64::INFINITY {
+                    continue;
+                }
+                self.level_m[child] = self.level_m[basin].max(pass.height_m);
+                if inward {
+                    turn_round(pass.cell as usize, pass.way, compass, way);
+                } else {
+                    turn_round(compass.to(pass.cell as usize, pass.way), opposite(pass.way), compass, way);
+                }
+                reached.push(child);
+            }
+        }
+    }
+}
+
+/// Leads the basin of `cell` out by `out`: the way from there down to the pit is turned round.
+fn turn_round(mut cell: usize, mut out: u8, compass: &Compass, way: &mut [u8]) {
+    loop {
+        let down = std::mem::replace(&mut way[cell], out);
+        if down == PIT || down == ROOT {
+            return;
+        }
+        cell = compass.to(cell, down);
+        out = opposite(down);
+    }
+}
+
+/// The passes, lowest first, that join basins not joined yet (Kruskal).
+fn lowest_tree(passes: &[Pass], basins: usize) -> Vec<Pass> {
+    let mut joined: Vec<u32> = (0..=basins as u32).collect();
+    let mut tree = Vec::with_capacity(basins);
+    for pass in passes {
+        let (a, b) = (representative(&mut joined, pass.from), representative(&mut joined, pass.to));
+        if a != b {
+            joined[a.max(b) as usize] = a.min(b);
+            tree.push(*pass);
+        }
+    }
+    tree
+}
+
+/// The basin that stands for all that are joined with `b`.
+fn representative(joined: &mut [u32], mut b: u32) -> u32 {
+    while joined[b as usize] != b {
+        let above = joined[joined[b as usize] as usize];
+        joined[b as usize] = above;
+        b = above;
+    }
+    b
+}
