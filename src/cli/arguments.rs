@@ -25,7 +25,7 @@ pub(crate) enum RawCommand {
     },
     /// Every parameter: unit, range, default, what raising it does
     Params(RawParams),
-    /// Numbers about a world
+    /// Numbers about a world, and how its landscape compares with Earth
     Inspect(RawInspect),
     /// Write a heightmap, a layer or a mesh for other programs; the ending gives the format
     Export(Box<RawExport>),
@@ -146,12 +146,13 @@ pub(crate) struct RawParams {
 /// `inspect` as typed.
 #[derive(Debug, Args)]
 pub(crate) struct RawInspect {
-    /// The world's folder, or the store in it
-    pub world: PathBuf,
+    /// The world's folder, or the store in it; of several, how their numbers spread
+    #[arg(required = true, value_name = "WORLD")]
+    pub worlds: Vec<PathBuf>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-    /// Write the numbers to a file as well (.json for JSON, else text)
+    /// Write a report too: .html a page with plots, .md with plots beside it, .json, else text
     #[arg(long, value_name = "FILE")]
     pub report: Option<PathBuf>,
 }

@@ -1,23 +1,15 @@
 //! `upthrust inspect` and `upthrust render`: worlds that are there already.
 
-use crate::{
-    job::{self, Picture},
-    measure,
-};
+use crate::job::{self, Picture};
 
 use super::{CliError, arguments::RawInspect, output::Output};
 
-/// Prints a world's numbers.
+/// Prints the numbers of one world or of several.
 pub(crate) fn inspect(inspect: &RawInspect, output: &mut Output) -> Result<(), CliError> {
-    let (world, _) = job::open_world(&inspect.world)?;
-    let measured = measure::inspect(&world);
-    let json = || serde_json::to_string_pretty(&measured).unwrap_or_default();
-    if let Some(path) = &inspect.report {
-        let as_json = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("json"));
-        let text = if as_json { json() + "\n" } else { format!("{}\n", measured.to_string().trim_end()) };
-        std::fs::write(path, text).map_err(|e| CliError::Request(format!("--report {}: {e}", path.display())))?;
-    }
-    output.line(if inspect.json { json() } else { measured.to_string() }.trim_end())
+    let report = inspect.report.as_deref();
+    let measured = job::Measured::of(&inspect.worlds, report)?;
+    report.map_or(Ok(()), |file| measured.write(file))?;
+    output.line(&if inspect.json { measured.json() } else { measured.text() })
 }
 
 /// Draws a world.

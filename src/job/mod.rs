@@ -11,6 +11,7 @@ mod grow;
 mod keep;
 mod manifest;
 mod picture;
+mod report;
 mod sheet;
 
 pub use estimate::{Estimate, estimate};
@@ -19,6 +20,7 @@ pub use folder::Existing;
 pub use grow::{Grown, Request, grow};
 pub use manifest::Manifest;
 pub use picture::{Picture, open_world, render};
+pub use report::Measured;
 pub use sheet::{MOST as SHEET_MOST, SheetRequest, sheet};
 
 use std::path::PathBuf;

@@ -1,14 +1,32 @@
-//! Numbers about a world: what `inspect` prints and the manifest holds.
+//! Numbers about a world: what `inspect` prints and the manifest holds, and how its landscape compares with Earth's.
 //!
-//! This room reads worlds and never changes them. Sums run in f64 in a fixed order.
+//! [`inspect`] counts what is there; [`survey`] measures the landscape, and [`METRICS`] says what to read from it and what
+//! is found on Earth. Heights decide: routing fills depressions, everything else looks at the ground as it is.
+//!
+//! This room reads worlds and never changes them, and writes no files. Sums run in f64 in a fixed order.
 
+mod fit;
+mod ground;
 mod hypsometry;
 mod inspect;
+mod metric;
+mod metrics;
+pub mod report;
 mod slopes;
+mod spread;
+mod streams;
+mod survey;
 
+pub use fit::{Line, quantile};
+pub use ground::{BasinHypsometry, DISC_M, Inversion, LocalRelief, Modes, Pits, Spectra, Spectrum, Variogram};
 pub use hypsometry::{Hypsometry, hypsometry};
 pub use inspect::{Books, Inspection, inspect};
+pub use metric::{Band, Metric, Missing, Reading, Verdict, short};
+pub use metrics::METRICS;
 pub use slopes::{Slopes, slopes};
+pub use spread::{Spread, readings_text, spreads, spreads_text, tally};
+pub use streams::{Chi, Exceedance, Hack, Horton, OrderRow, SlopeArea, THETA_REF};
+pub use survey::{Survey, survey};
 
 use serde::Serialize;
 use sha2::{Digest, Sha256};

@@ -17,6 +17,10 @@ const PERCENTILES: [u8; 7] = [5, 10, 25, 50, 75, 90, 95];
 pub struct Slopes {
     /// Mean slope, degrees.
     pub mean_deg: f64,
+    /// Standard deviation of slope, degrees.
+    pub deviation_deg: f64,
+    /// Standard deviation over mean of the tangent of slope (Olsen 2004); absent where all is level.
+    pub erosion_score: Option<f64>,
     /// Greatest slope, degrees.
     pub max_deg: f64,
     /// `(percent, slope)`: so many percent of the cells are flatter.
@@ -43,12 +47,24 @@ pub fn slopes(height: &Field<f32>, above_m: f64) -> Option<Slopes> {
         histogram[((s as f64 / BIN_DEG) as usize).min(BINS - 1)] += 1.0;
     }
     histogram.iter_mut().for_each(|bin| *bin /= count);
+    let (mean_deg, deviation_deg) = moments(&sorted);
+    let tangents: Vec<f32> = sorted.iter().map(|&s| libm::tan((s as f64).to_radians()) as f32).collect();
+    let (mean, deviation) = moments(&tangents);
     Some(Slopes {
-        mean_deg: sum_f64(&sorted) / count,
+        mean_deg,
+        deviation_deg,
+        erosion_score: (mean > 0.0).then(|| deviation / mean),
         max_deg: sorted[sorted.len() - 1] as f64,
         percentiles_deg: PERCENTILES.map(|p| (p, rank(&sorted, p as f64 / 100.0))).to_vec(),
         histogram,
     })
+}
+
+/// Mean and standard deviation.
+fn moments(values: &[f32]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = sum_f64(values) / n;
+    (mean, (values.iter().map(|&v| (v as f64 - mean) * (v as f64 - mean)).sum::<f64>() / n).sqrt())
 }
 
 #[cfg(test)]
@@ -62,6 +78,7 @@ mod tests {
         let plane = Field::from_fn(grid, |x, _| (x as f32 - 10.0) * 100.0);
         let slopes = slopes(&plane, -1e9).unwrap();
         assert!((slopes.mean_deg - 45.0).abs() < 1e-5 && (slopes.max_deg - 45.0).abs() < 1e-5);
+        assert!(slopes.deviation_deg < 1e-5 && slopes.erosion_score.unwrap() < 1e-6);
         assert!(slopes.percentiles_deg.iter().all(|(_, s)| (s - 45.0).abs() < 1e-5));
         assert_eq!(slopes.histogram.iter().sum::<f64>(), 1.0);
         assert_eq!(super::slopes(&plane, 1e9), None);

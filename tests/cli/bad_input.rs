@@ -127,7 +127,7 @@ fn worlds() {
     );
     #[cfg(not(feature = "app"))]
     refused(&place, &["app"], "this build lacks the desktop application; build it with --features app", 2);
-    let named = "the following required arguments were not provided: <WORLD>; see 'upthrust --help'";
+    let named = "the following required arguments were not provided: <WORLD>...; see 'upthrust --help'";
     refused(&place, &["inspect"], named, 2);
 }
 

@@ -7,6 +7,7 @@ mod grow;
 mod import;
 mod interrupt;
 mod reference;
+mod report;
 mod round_trip;
 
 use std::{
