@@ -30,6 +30,17 @@ pub trait Process: Send {
         Ok(())
     }
 
+    /// The grid it leaves behind, for those that change it. Asked while a recipe is read, so that the stages behind are
+    /// asked about the right one.
+    fn grid_after(&self, grid: &Grid) -> Grid {
+        *grid
+    }
+
+    /// Whether the layers stand for the present after every step, also without [`Process::publish`].
+    fn up_to_date(&self) -> bool {
+        true
+    }
+
     /// Runs one step, whole or not at all: one that ends with [`ProcessError::Cancelled`] has changed nothing, so that
     /// the run can be taken up where it was.
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError>;

@@ -61,7 +61,8 @@ fn folder(request: &Request, voice: Voice, cancel: &AtomicBool) -> Result<Grown,
 }
 
 fn announce(plan: &Plan, estimate: &Estimate) -> String {
-    let [width, height] = plan.world.size.cells();
+    let largest = plan.largest_grid();
+    let (width, height) = (largest.width, largest.height);
     let minutes = estimate.seconds / 60.0;
     let time = if minutes < 1.5 { format!("{:.0} s", estimate.seconds) } else { format!("{minutes:.0} min") };
     let gib = estimate.bytes / (1u64 << 30) as f64;

@@ -1,7 +1,13 @@
-//! What a person does to a world from outside: the stage `import`, which lays a heightmap of any origin into the bedrock.
+//! What a person does to a world from outside: lay a heightmap of any origin into the bedrock (stage `import`), say how fast
+//! rock rises (`uplift`) and how hard it is (`hardness`), and go on with a part of the map at a finer scale (`zoom`).
 //!
 //! | file | owns |
 //! |---|---|
+//! | `uplift` `hardness` | the stages of those names |
+//! | `region` | rectangles and discs with soft edges |
+//! | `zoom` | the stage: which window, and what becomes of layers, tables and books |
+//! | `window` | resampling of layers to a window, and detail below the old cells |
+//! | `inflow` | the rivers that come in over a window's rim |
 //! | `import` | the stage: its parameters, and how a file becomes the heights of a map |
 //! | `read` | the formats, one file each: a header first, heights only when it is sound |
 //! | `fill` | heights where a file has none |
@@ -11,14 +17,24 @@
 //! decoded, so that no file can ask for more memory than a map of the largest size.
 
 mod fill;
+mod hardness;
 mod import;
+mod inflow;
 mod read;
+mod region;
 #[cfg(test)]
 mod tests;
 mod unstep;
+mod uplift;
+mod window;
+mod zoom;
 
+pub use hardness::HardnessParams;
 pub use import::{Endian, ImportParams, NoData, SourceFormat};
 pub use read::{Format, Header, Heightmap, MOST_SIDE, Sample};
+pub use region::Outline;
+pub use uplift::{UpliftChange, UpliftParams, UpliftShape};
+pub use zoom::ZoomParams;
 
 /// A file that cannot be imported.
 #[derive(Debug, thiserror::Error)]

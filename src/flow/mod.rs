@@ -36,6 +36,16 @@ pub fn outlets(height: &Field<f32>, sea_level_m: f64) -> Vec<bool> {
     outlet
 }
 
+/// The same without `gates`: cells of the rim where rivers come in. Where they are the only ways out they stay.
+pub fn outlets_but(height: &Field<f32>, sea_level_m: f64, gates: &[usize]) -> Vec<bool> {
+    let all = outlets(height, sea_level_m);
+    let mut some = all.clone();
+    for &i in gates {
+        some[i] &= (height.data[i] as f64) < sea_level_m;
+    }
+    if some.contains(&true) { some } else { all }
+}
+
 /// The neighbours of a cell that lie on the map, with the distance in cells.
 pub fn neighbours(grid: Grid, i: usize) -> impl Iterator<Item = (usize, f64)> {
     Compass::new(grid).around(i).map(|(way, j)| (j, LENGTHS[way as usize]))

@@ -2,7 +2,7 @@
 
 use std::{sync::atomic::AtomicBool, time::Instant};
 
-use crate::recipe::{Plan, Size};
+use crate::recipe::Plan;
 
 use super::{JobError, grow::run};
 
@@ -26,20 +26,17 @@ pub struct Estimate {
 
 /// The cost of a run, if it is large: a fixed part and a part in proportion to the cells, from two small runs.
 pub fn estimate(plan: &Plan, cancel: &AtomicBool) -> Result<Option<Estimate>, JobError> {
-    let [width, height] = plan.world.size.cells();
-    let cells = (width * height) as f64;
+    let cells = plan.largest_grid().cells() as f64;
     if cells < LARGE_CELLS {
         return Ok(None);
     }
     let mut seen = Vec::new();
     let mut fields = WORKING_FIELDS;
     for side in TRIALS {
-        let mut small = plan.clone();
-        let shrink = |n: usize| (n * side / width.max(height)).max(16);
-        small.world.size = Size::Sides([shrink(width), shrink(height)]);
+        let small = plan.shrunk(side);
         let started = Instant::now();
         let (world, _) = run(&small, None, cancel, &mut |_| ())?;
-        seen.push((world.grid.cells() as f64, started.elapsed().as_secs_f64()));
+        seen.push((small.largest_grid().cells() as f64, started.elapsed().as_secs_f64()));
         fields = WORKING_FIELDS + world.layers().count();
     }
     Ok(Some(Estimate { seconds: extrapolate(&seen, cells) + writing(cells), bytes: cells * 4.0 * fields as f64 }))

@@ -6,6 +6,7 @@
 //!   lock                         held by the run that fills it
 //!   checkpoints/                 see `timeline`
 //!   timeline/                    kept frames, if they are asked for
+//!   series.notes profiles.notes  rows of series.csv and profiles.csv so far
 //!   world/                       what will be the finished world
 //! ```
 
@@ -97,6 +98,9 @@ impl Partial {
         if existing != Existing::Resume {
             remove(&self.checkpoints())?;
             remove(&self.timeline())?;
+            for notes in ["series.notes", "profiles.notes"] {
+                remove_file(&self.beside.join(notes))?;
+            }
         }
         fs::create_dir(self.path())?;
         if !self.checkpoints().is_dir() {
@@ -108,6 +112,11 @@ impl Partial {
     /// Where to write the world.
     pub fn path(&self) -> PathBuf {
         self.beside.join("world")
+    }
+
+    /// Where to note what becomes part of the world at the end.
+    pub fn beside(&self) -> &Path {
+        &self.beside
     }
 
     /// Where to keep checkpoints.
@@ -178,6 +187,13 @@ fn has_checkpoint(beside: &Path) -> bool {
 
 fn remove(folder: &Path) -> io::Result<()> {
     match fs::remove_dir_all(folder) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),
+        _ => Ok(()),
+    }
+}
+
+fn remove_file(file: &Path) -> io::Result<()> {
+    match fs::remove_file(file) {
         Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),
         _ => Ok(()),
     }

@@ -24,6 +24,7 @@ use super::{
     folder::{Partial, free, newest},
     keep::KeepSink,
     picture::write_png,
+    series::{PROFILES, ProfileSink, SERIES, SeriesSink},
 };
 
 /// What is to be grown, and where to.
@@ -95,7 +96,9 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     let place = from.as_ref().map(Checkpoint::place);
     let keep = |layers: &Vec<Layer>| KeepSink::begin(&partial.timeline(), plan.world.grid(), layers, place);
     let mut keep = request.keep.as_ref().map(keep).transpose()?;
-    let mut sinks: Vec<&mut dyn Sink> = Vec::new();
+    let mut series = SeriesSink::begin(partial.beside(), place)?;
+    let mut profiles = ProfileSink::begin(partial.beside(), place, keep.is_some())?;
+    let mut sinks: Vec<&mut dyn Sink> = vec![&mut series, &mut profiles];
     sinks.extend(film.as_mut().map(|film| film as &mut dyn Sink));
     sinks.extend(frames.as_mut().map(|frames| frames as &mut dyn Sink));
     sinks.extend(keep.as_mut().map(|keep| keep as &mut dyn Sink));
@@ -115,8 +118,10 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     }
     let height_png = write(plan, &world, &partial.path(), cancel, tell).map_err(stopped)?;
     keep.map_or(Ok(()), |keep| keep.finish(&partial.path().join(STORE)))?;
+    let in_time = [(SERIES, series.finish(&partial.path())?), (PROFILES, profiles.finish(&partial.path())?)];
     let mut manifest = Manifest::new(plan, &world, measure::inspect(&world), height_png);
     manifest.stages = stages;
+    manifest.in_time = in_time.into_iter().filter(|(_, made)| *made).map(|(file, _)| file).collect();
     manifest.until = ended;
     manifest.seconds = started.elapsed().as_secs_f64();
     manifest.write(&partial.path())?;

@@ -36,6 +36,9 @@ pub struct Manifest {
     pub cell_m: f64,
     /// West-east and north-south extent, km.
     pub extent_km: [f64; 2],
+    /// Where the map's north-west corner lies in the first map, east and south of that one's, km, where a stage cut a window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window_at_km: Option<[f64; 2]>,
     /// What lies beyond the rim.
     pub edges: crate::grid::Edges,
     /// Height of the sea, m.
@@ -52,6 +55,8 @@ pub struct Manifest {
     pub ledger: Vec<Books>,
     /// Steps and seconds of each stage.
     pub stages: Vec<StageRecord>,
+    /// Files with the run's numbers in time: a row a step, and the rivers' long profiles.
+    pub in_time: Vec<&'static str>,
     /// Threads that worked.
     pub threads: usize,
     /// Seconds from the first step to the last file.
@@ -71,6 +76,7 @@ impl Manifest {
             size: measured.size,
             cell_m: measured.cell_m,
             extent_km: measured.extent_km,
+            window_at_km: window_at_km(world),
             edges: world.grid.edges,
             sea_level_m: world.sea_level_m,
             time_yr: world.time_yr,
@@ -79,6 +85,7 @@ impl Manifest {
             layers: measured.layers,
             ledger: measured.ledger,
             stages: Vec::new(),
+            in_time: Vec::new(),
             threads: rayon::current_num_threads(),
             seconds: 0.0,
         }
@@ -94,4 +101,11 @@ impl Manifest {
         let path = folder.join(MANIFEST);
         std::fs::write(&path, self.text()).map_err(|cause| JobError::Disk { path, cause })
     }
+}
+
+/// The last row of the table that zooms write.
+fn window_at_km(world: &World) -> Option<[f64; 2]> {
+    let windows = world.table("windows")?;
+    let last = |column: &str| windows.numbers(column)?.last().copied();
+    Some([last("first_x_km")?, last("first_y_km")?])
 }

@@ -12,6 +12,7 @@ mod keep;
 mod manifest;
 mod picture;
 mod report;
+mod series;
 mod sheet;
 
 pub use estimate::{Estimate, estimate};
@@ -21,6 +22,7 @@ pub use grow::{Grown, Request, grow};
 pub use manifest::Manifest;
 pub use picture::{Picture, open_world, render};
 pub use report::Measured;
+pub use series::{PROFILES, SERIES};
 pub use sheet::{MOST as SHEET_MOST, SheetRequest, sheet};
 
 use std::path::PathBuf;

@@ -6,6 +6,7 @@
 //! This room reads worlds and never changes them, and writes no files. Sums run in f64 in a fixed order.
 
 mod fit;
+mod glance;
 mod ground;
 mod hypsometry;
 mod inspect;
@@ -19,12 +20,16 @@ mod survey;
 
 pub use fit::{Line, quantile};
 pub use ground::{BasinHypsometry, DISC_M, Inversion, LocalRelief, Modes, Pits, Spectra, Spectrum, Variogram};
+mod stems;
+
+pub use glance::{Glance, Rates};
 pub use hypsometry::{Hypsometry, hypsometry};
 pub use inspect::{Books, Inspection, inspect};
 pub use metric::{Band, Metric, Missing, Reading, Verdict, short};
 pub use metrics::METRICS;
 pub use slopes::{Slopes, slopes};
 pub use spread::{Spread, readings_text, spreads, spreads_text, tally};
+pub use stems::{StemPoint, main_stems};
 pub use streams::{Chi, Exceedance, Hack, Horton, OrderRow, SlopeArea, THETA_REF};
 pub use survey::{Survey, survey};
 

@@ -13,13 +13,14 @@ use crate::{
 };
 
 use super::{
-    Overrides, Setting, Source, StageKind, WorldParams,
+    Overrides, Setting, Size, Source, StageKind, WorldParams,
     error::{Problem, RecipeError},
     imports::Imports,
     near::nearest,
     schema::{self, Checker},
     stages,
     tree::{self, Node, Place, Table, Value, quoted},
+    world::MIN_SIDE,
 };
 
 /// A recipe that can be run.
@@ -245,6 +246,38 @@ impl Plan {
         self.stages.iter().enumerate().filter(|(_, stage)| stage.enabled)
     }
 
+    /// The same plan on a map whose longer side has `side` cells; stages that state their own number of cells have in
+    /// proportion fewer.
+    pub fn shrunk(&self, side: usize) -> Self {
+        let mut small = self.clone();
+        let [width, height] = self.world.size.cells();
+        let longer = width.max(height);
+        let shrink = |cells: usize| (cells * side / longer).clamp(MIN_SIDE, cells.max(MIN_SIDE));
+        small.world.size = Size::Sides([shrink(width), shrink(height)]);
+        for stage in small.stages.iter_mut().filter(|stage| stage.kind.kind == "zoom") {
+            if let Some(cells) = stage.params["size"].as_u64() {
+                stage.params["size"] = shrink(cells as usize).into();
+            }
+        }
+        small
+    }
+
+    /// The map with the most cells there is in the run.
+    pub fn largest_grid(&self) -> Grid {
+        let first = self.world.grid();
+        self.grids().into_iter().fold(first, |most, grid| if grid.cells() > most.cells() { grid } else { most })
+    }
+
+    /// The map of each stage that runs, as it is when the stage is over; those that change it are asked.
+    pub fn grids(&self) -> Vec<Grid> {
+        let mut grid = self.world.grid();
+        let after = |(_, stage): (usize, &Stage)| {
+            grid = stage.build().map_or(grid, |process| process.grid_after(&grid));
+            grid
+        };
+        self.running().map(after).collect()
+    }
+
     /// The stage that a word means: its id, kind#ordinal, or its kind where that is the only one.
     pub fn find_stage(&self, name: &str) -> Option<usize> {
         let exact = self.stages.iter().position(|s| s.is_called(name) || s.coupled.iter().any(|c| c.is_called(name)));
@@ -386,15 +419,17 @@ impl Reader<'_> {
         Ok(made)
     }
 
-    /// Asks every stage that runs whether it goes together with the map.
-    fn fit(&self, root: &Table, stages: &[Stage], grid: Grid) -> Result<(), RecipeError> {
+    /// Asks every stage that runs whether it goes together with the map as it is by then.
+    fn fit(&self, root: &Table, stages: &[Stage], mut grid: Grid) -> Result<(), RecipeError> {
         let places: BTreeMap<String, Place> =
             stage_keys(root).iter().map(StageKey::key).zip(stage_places(root)).collect();
         let all = stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.coupled));
         for stage in all.filter(|stage| stage.enabled) {
             let place = places.get(&stage.key).unwrap_or(&Place::File);
             let unfit = |e: ProcessError| self.error(place, Problem::Unfit(format!("stage '{}': {e}", stage.label)));
-            stage.build().and_then(|process| process.fit(&grid)).map_err(unfit)?;
+            let process = stage.build().map_err(unfit)?;
+            process.fit(&grid).map_err(unfit)?;
+            grid = process.grid_after(&grid);
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use serde_json::Value as Json;
 
 use crate::{
-    edit::ImportParams,
+    edit::{HardnessParams, ImportParams, UpliftParams, ZoomParams},
     erosion::StreamPowerParams,
     process::{Placement, Process, ProcessError},
     tectonics::PlatesParams,
@@ -125,6 +125,15 @@ fn table() -> Vec<StageKind> {
         },
         row("stream_power", "Rivers", "Rivers cut into rising land over geologic time.", |rivers: StreamPowerParams, setting| {
             Ok(rivers.process(setting.placement, setting.steps))
+        }),
+        row("uplift", "Uplift", "Sets how fast rock is raised, where and when.", |uplift: UpliftParams, setting| {
+            Ok(uplift.process(setting.placement))
+        }),
+        row("hardness", "Hardness", "Lays bands of hard rock into soft rock.", |hardness: HardnessParams, setting| {
+            Ok(hardness.process(setting.placement))
+        }),
+        row("zoom", "Zoom", "Goes on with a part of the map at a finer scale.", |zoom: ZoomParams, setting| {
+            zoom.process(setting.placement)
         }),
         #[cfg(test)]
         ground::<super::probe::ProbeParams>("probe", "Probe", "A level ground for tests."),

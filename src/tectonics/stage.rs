@@ -99,6 +99,10 @@ struct Shared {
 }
 
 impl Process for Stage {
+    fn up_to_date(&self) -> bool {
+        self.leads
+    }
+
     fn writes(&self) -> &'static [Layer] {
         if self.leads { &WRITTEN } else { &WRITTEN[..7] }
     }
@@ -423,6 +427,8 @@ impl Geologic {
     }
 
     fn show_tables(&self, world: &mut World) {
+        // Steps in time belong to the rates that stood there before.
+        world.set_uplift_steps(&[]);
         world.set_table(tables::plates(&self.simulation, &self.warp, &self.first));
         world.set_table(tables::outlines(&self.simulation, &self.warp, &self.bodies));
         world.set_table(tables::convergence(&self.simulation));

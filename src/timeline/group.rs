@@ -90,6 +90,11 @@ impl<'a> Group<'a> {
         }
     }
 
+    /// Whether the world is up to date with all of them after a step.
+    pub fn up_to_date(&self) -> bool {
+        self.members.iter().all(|member| member.process.up_to_date())
+    }
+
     /// Layers that any of them may change.
     pub fn writes(&self) -> impl Iterator<Item = Layer> + '_ {
         self.members.iter().flat_map(|member| member.process.writes().iter().copied())

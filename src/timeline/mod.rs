@@ -47,6 +47,11 @@ pub trait Sink {
     /// a frame that somebody wants, and when it is over.
     fn wants(&mut self, moment: &Moment) -> bool;
 
+    /// Whether it takes the world, where it did not want it, because its layers are up to date all the same.
+    fn glances(&mut self, _moment: &Moment) -> bool {
+        false
+    }
+
     /// Takes a frame; an error, said in one line, stops the run.
     fn take(&mut self, world: &World, moment: &Moment) -> Result<(), String>;
 }

@@ -145,6 +145,7 @@ impl<'a> Timeline<'a> {
         watch.tell(at.step, at.done, world);
         while at.done < 1.0 {
             at.seconds = before + started.elapsed().as_secs_f64();
+            let grid = world.grid;
             let taken = group.step(world);
             if let Err(Failure { why: ProcessError::Cancelled, .. }) = taken {
                 self.keep(world, &at, &group)?;
@@ -152,7 +153,9 @@ impl<'a> Timeline<'a> {
             let Step { done, elapsed_yr } = taken.map_err(|e| stopped(at.step + 1, e))?;
             (at.step, at.done) = (at.step + 1, done);
             world.time_yr += elapsed_yr;
-            find_non_finite(stage, at.step, group.writes(), world)?;
+            // A world on another grid has been made anew, layer by layer.
+            let all = (world.grid != grid).then_some(Layer::ALL);
+            find_non_finite(stage, at.step, group.writes().chain(all.into_iter().flatten().copied()), world)?;
             watch.show(&mut group, world, &at)?;
             if done < 1.0 {
                 watch.tell(at.step, done, world);
@@ -232,11 +235,15 @@ impl<'w> Watch<'w, '_> {
     fn show(&mut self, group: &mut Group, world: &mut World, at: &Position) -> Result<(), TimelineError> {
         let moment = self.moment(at.step, at.done, world);
         let wanting: Vec<bool> = self.sinks.iter_mut().map(|sink| sink.wants(&moment)).collect();
-        if moment.stage_over() || wanting.contains(&true) {
+        let published = moment.stage_over() || wanting.contains(&true);
+        if published {
             group.publish(world).map_err(|e| stopped(at.step, e))?;
         }
-        for (sink, _) in self.sinks.iter_mut().zip(wanting).filter(|(_, wants)| *wants) {
-            sink.take(world, &moment).map_err(TimelineError::Sink)?;
+        let shown = published || group.up_to_date();
+        for (sink, wants) in self.sinks.iter_mut().zip(wanting) {
+            if wants || shown && sink.glances(&moment) {
+                sink.take(world, &moment).map_err(TimelineError::Sink)?;
+            }
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 //! This room knows what a layer means (name, unit, range, palette) but no process. It alone touches zarrs.
 
 mod catalogue;
+mod forcing;
 mod ledger;
 mod mask;
 mod picture;
@@ -10,6 +11,7 @@ pub mod store;
 mod table;
 
 pub use catalogue::{Kind, Layer, Palette, Spec};
+pub use forcing::{Inflow, Sources};
 pub use ledger::{Account, Ledger, Matter};
 pub use mask::{Mask, MaskError};
 pub use picture::{PictureError, open_picture, sample};
@@ -64,6 +66,15 @@ impl World {
         self.layers.insert(layer, field);
     }
 
+    /// Goes over to another raster: every stored layer as `remade` has it there.
+    pub fn regrid(&mut self, grid: Grid, remade: impl Fn(Layer, &Field<f32>) -> Field<f32>) {
+        self.grid = grid;
+        for (&layer, field) in &mut self.layers {
+            *field = remade(layer, field);
+            assert!(field.grid == grid, "{} does not fit this world", layer.name());
+        }
+    }
+
     /// Takes a layer out.
     pub fn remove_layer(&mut self, layer: Layer) -> Option<Field<f32>> {
         self.layers.remove(&layer)
@@ -82,6 +93,11 @@ impl World {
     /// Puts a table in place, under its own name.
     pub fn set_table(&mut self, table: Table) {
         self.tables.insert(table.name.clone(), table);
+    }
+
+    /// Takes a table out.
+    pub fn remove_table(&mut self, name: &str) -> Option<Table> {
+        self.tables.remove(name)
     }
 
     /// The tables, by name.

@@ -42,6 +42,7 @@ struct Entry {
     step: u64,
     time_yr: f64,
     sea_level_m: f64,
+    cell_m: f64,
 }
 
 /// A folder of heightmaps being filled. Dropped before it is finished, it leaves nothing behind.
@@ -95,6 +96,7 @@ impl HeightFrames {
             step: moment.step,
             time_yr: moment.time_yr,
             sea_level_m: world.sea_level_m,
+            cell_m: world.grid.cell_m,
         });
         Ok(())
     }

@@ -26,7 +26,7 @@ use super::JobError;
 use crate::{
     export::video::Encoder,
     grid::Grid,
-    relief::film::{Animation, Shot, Words},
+    relief::film::{Animation, Options, Shot, Words},
     timeline::{Checkpoint, Moment},
     world::World,
 };
@@ -40,6 +40,9 @@ const SLACK: f64 = 1e-9;
 /// A film being made. Dropped before [`Film::finish`], it leaves nothing behind.
 pub struct Film {
     animation: Animation,
+    options: Options,
+    /// The grid of the worlds; a stage may leave another one behind.
+    grid: Grid,
     encoder: Encoder,
     clips: Vec<Clip>,
     clock: bool,
@@ -63,6 +66,8 @@ impl Film {
         let encoder = Encoder::open(&plan.file, &plan.encoding)?;
         Ok(Self {
             animation,
+            options: plan.animation.clone(),
+            grid,
             encoder,
             clips: plan.clips.clone(),
             clock: plan.clock,
@@ -104,6 +109,13 @@ impl Film {
             self.stage = moment.stage;
             self.began_yr = self.shot.as_ref().map_or(0.0, Shot::time_yr);
             (self.at, self.next) = (0.0, 1.0);
+        }
+        if world.grid != self.grid {
+            // Between two maps there is nothing to be drawn: the film cuts to the new one.
+            self.animation = Animation::new(world.grid, &self.options);
+            self.grid = world.grid;
+            self.flat_before = false;
+            self.shot = None;
         }
         let to = self.animation.shot(world)?;
         let first = || if self.flat_before { to.before() } else { to.clone() };

@@ -31,7 +31,7 @@ pub fn replay(
         return Err(JobError::Refused(format!("{}: {what}", path.display())));
     };
     let planned = plan(request, &recording, &world, &provenance)?;
-    let mut film = Film::new(&planned, world.grid)?;
+    let mut film = Film::new(&planned, recording.first_grid().unwrap_or(world.grid))?;
     let stages = planned.clips.len();
     for (i, frame) in recording.frames().iter().enumerate() {
         if cancel.load(Ordering::Relaxed) {

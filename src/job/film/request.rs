@@ -12,7 +12,7 @@ use super::{
 use crate::{
     export::video::{Encoder, Format, Rate, Settings},
     job::{JobError, grow::run, picture},
-    recipe::{Plan, Size},
+    recipe::Plan,
     relief::{View, film},
     world::{Layer, World},
 };
@@ -150,10 +150,7 @@ pub fn range_over_sea(plan: &Plan, until: Option<usize>, cancel: &AtomicBool) ->
     if running().any(|(_, stage)| stage.takes_time()) {
         return Ok(EARTH_M);
     }
-    let mut small = plan.clone();
-    let [width, height] = plan.world.size.cells();
-    let shrink = |side: usize| (side * TRIAL_SIDE / width.max(height)).clamp(16, side);
-    small.world.size = Size::Sides([shrink(width), shrink(height)]);
+    let small = plan.shrunk(TRIAL_SIDE);
     let (world, _) = run(&small, until, cancel, &mut |_| ())?;
     Ok(range_of(&world))
 }

@@ -6,7 +6,7 @@
 //!   x  y               centres of the cells in metres, x to the east, y to the south
 //!   height bedrock ... one array a layer, dimensions (y, x); height is derived and only for readers
 //!   tables/NAME/COLUMN one array a column, dimension row
-//!   timeline/          layers along t, where a run was told to keep them
+//!   timeline/          layers along t, where a run was told to keep them; timeline_2 and on after a zoom
 //! ```
 //!
 //! Layers are f32, or integers where the catalogue calls them classes or identities and every value is one. Inner

@@ -8,6 +8,8 @@
 //!   height ...         one array a layer, dimensions (t, y, x); a frame is a shard of its own
 //! ```
 //!
+//! The frames before and after a change of the map's raster are groups of their own: `timeline`, `timeline_2`, ...
+//!
 //! While a run goes on it is written beside the world, frame by frame; each frame's head is added to `frames.jsonl` after its
 //! layers, so that a killed run finds what is whole. [`Recorder::finish`] turns that folder into a group of the store.
 
@@ -35,10 +37,14 @@ use crate::{
     world::{Layer, World},
 };
 
-/// The group's name in a store.
-const GROUP: &str = "timeline";
+/// The name in a store of the nth group, from 0.
+fn group_name(nth: usize) -> String {
+    if nth == 0 { "timeline".to_owned() } else { format!("timeline_{}", nth + 1) }
+}
 /// The list of frames while they are being written.
 const FRAMES: &str = "frames.jsonl";
+/// The raster of the frames while they are being written.
+const RASTER: &str = "grid.json";
 /// More frames than any film has.
 const MOST_FRAMES: u64 = 1 << 20;
 
@@ -80,6 +86,7 @@ impl Recorder {
         let mut text = Vec::new();
         frames.iter().for_each(|frame| text.extend(line(frame)));
         fs::write(&beside, text).map_err(disk(&beside))?;
+        fs::write(path.join(RASTER), json!(grid).to_string()).map_err(disk(path))?;
         let list = path.join(FRAMES);
         fs::rename(&beside, &list).map_err(disk(&list))?;
         let list = fs::OpenOptions::new().append(true).open(&list).map_err(disk(&list))?;
@@ -88,6 +95,16 @@ impl Recorder {
         let arrays = layers.iter().map(|&layer| Ok((layer, array(&mut writer, grid, layer, MOST_FRAMES)?)));
         let arrays = arrays.collect::<Result<_, StoreError>>()?;
         Ok(Self { writer, grid, arrays, frames, list })
+    }
+
+    /// The raster of the frames that a stopped run left in a folder, if there are any.
+    pub fn left_grid(path: &Path) -> Option<Grid> {
+        serde_json::from_slice(&fs::read(path.join(RASTER)).ok()?).ok()
+    }
+
+    /// The raster of its frames.
+    pub fn grid(&self) -> Grid {
+        self.grid
     }
 
     /// The frames so far.
@@ -127,8 +144,8 @@ impl Recorder {
         })
     }
 
-    /// Makes the frames a group of the store at `world`.
-    pub fn finish(mut self, world: &Path) -> Result<(), StoreError> {
+    /// Makes the frames the nth timeline, from 0, of the store at `world`.
+    pub fn finish(mut self, world: &Path, nth: usize) -> Result<(), StoreError> {
         let count = self.frames.len() as u64;
         for (layer, _) in &self.arrays {
             array(&mut self.writer, self.grid, *layer, count)?;
@@ -161,15 +178,19 @@ impl Recorder {
             self.writer.line(&head, data_type::float64(), 0.0f64, values)?;
         }
         let layers: Vec<&str> = self.arrays.iter().map(|(layer, _)| layer.name()).collect();
-        let group = json!({ "zarr_format": 3, "node_type": "group", "attributes": { "layers": layers } });
+        let attributes = json!({ "layers": layers, "grid": self.grid });
+        let group = json!({ "zarr_format": 3, "node_type": "group", "attributes": attributes });
         let path = self.writer.path.clone();
         fs::write(path.join("zarr.json"), group.to_string()).map_err(disk(&path))?;
         drop(self.list);
-        fs::remove_file(path.join(FRAMES)).map_err(disk(&path))?;
-        let place = world.join(GROUP);
+        for list in [FRAMES, RASTER] {
+            fs::remove_file(path.join(list)).map_err(disk(&path))?;
+        }
+        let name = group_name(nth);
+        let place = world.join(&name);
         fs::rename(&path, &place).map_err(disk(&place))?;
-        let nodes = self.writer.nodes.into_iter().map(|(node, metadata)| (format!("{GROUP}/{node}"), metadata));
-        list_nodes(world, nodes.chain([(GROUP.to_owned(), group)]))
+        let nodes = self.writer.nodes.into_iter().map(|(node, metadata)| (format!("{name}/{node}"), metadata));
+        list_nodes(world, nodes.chain([(name.clone(), group)]))
     }
 }
 
@@ -213,27 +234,49 @@ fn list_nodes(world: &Path, nodes: impl Iterator<Item = (String, Value)>) -> Res
 /// Reads a kept timeline.
 pub struct Recording {
     reader: Reader,
-    grid: Grid,
-    layers: Vec<Layer>,
+    parts: Vec<Part>,
     frames: Vec<Frame>,
 }
 
+/// Frames on one raster.
+struct Part {
+    group: String,
+    grid: Grid,
+    layers: Vec<Layer>,
+    /// How many frames there are, and how many before.
+    count: usize,
+    before: usize,
+}
+
 impl Recording {
-    /// The timeline of the world at `path` over its grid; `None` where none was kept.
+    /// The timeline of the world at `path`, whose grid is that of its frames where they do not say; `None` where none was
+    /// kept.
     pub fn open(path: &Path, grid: Grid) -> Result<Option<Self>, StoreError> {
         let path = locate(path)?;
-        if !path.join(GROUP).join("zarr.json").is_file() {
+        let groups: Vec<String> =
+            (0..).map(group_name).take_while(|group| path.join(group).join("zarr.json").is_file()).collect();
+        if groups.is_empty() {
             return Ok(None);
         }
-        let reader = Reader::open(path)?;
-        let attributes = reader.attributes(GROUP)?;
+        let mut recording = Self { reader: Reader::open(path)?, parts: Vec::new(), frames: Vec::new() };
+        groups.into_iter().try_for_each(|group| recording.add(group, grid))?;
+        Ok(Some(recording))
+    }
+
+    fn add(&mut self, group: String, usual: Grid) -> Result<(), StoreError> {
+        let reader = &self.reader;
+        let attributes = reader.attributes(&group)?;
         let names: Vec<String> = reader.get(&attributes, "layers")?;
         let layers = names.iter().map(|name| {
             Layer::from_name(name).ok_or_else(|| reader.damaged(format!("layer '{name}' is not in the catalogue")))
         });
         let layers = layers.collect::<Result<_, _>>()?;
+        let grid = if attributes.contains_key("grid") { reader.get(&attributes, "grid")? } else { usual };
+        if !(grid.width > 0 && grid.height > 0 && grid.cell_m.is_finite() && grid.cell_m > 0.0) {
+            return Err(reader.damaged(format!("{group}: {} x {} cells of {} m", grid.width, grid.height, grid.cell_m)));
+        }
         let column = |name: &str| -> Result<Vec<f64>, StoreError> {
-            let node = format!("{GROUP}/{name}");
+            let node = format!("{group}/{name}");
             reader.line(&node, &reader.array(&node)?)
         };
         let [time, sea, stage, step, done] =
@@ -241,15 +284,15 @@ impl Recording {
         if [&sea, &stage, &step, &done].iter().any(|column| column.len() != time.len()) {
             return Err(reader.damaged("the timeline's columns differ in length"));
         }
-        let frames = (0..time.len()).map(|i| Frame {
+        self.parts.push(Part { group, grid, layers, count: time.len(), before: self.frames.len() });
+        self.frames.extend((0..time.len()).map(|i| Frame {
             stage: stage[i] as usize,
             step: step[i] as u64,
             done: done[i],
             time_yr: time[i],
             sea_level_m: sea[i],
-        });
-        let frames = frames.collect();
-        Ok(Some(Self { reader, grid, layers, frames }))
+        }));
+        Ok(())
     }
 
     /// Where each frame stands.
@@ -259,23 +302,30 @@ impl Recording {
 
     /// The layers that were kept.
     pub fn layers(&self) -> &[Layer] {
-        &self.layers
+        self.parts.first().map_or(&[], |part| &part.layers)
+    }
+
+    /// The raster of the first frame.
+    pub fn first_grid(&self) -> Option<Grid> {
+        self.parts.first().map(|part| part.grid)
     }
 
     /// The world of a frame, as far as it was kept: a kept height stands as bedrock.
     pub fn world(&self, index: usize) -> Result<World, StoreError> {
         let frame = &self.frames[index];
-        let mut world = World::new(self.grid, frame.sea_level_m);
+        let at = self.parts.partition_point(|part| part.before <= index) - 1;
+        let Part { group, grid, layers, count, before } = &self.parts[at];
+        let mut world = World::new(*grid, frame.sea_level_m);
         world.time_yr = frame.time_yr;
-        for &layer in &self.layers {
-            let node = format!("{GROUP}/{}", layer.name());
+        for &layer in layers {
+            let node = format!("{group}/{}", layer.name());
             let array = self.reader.array(&node)?;
-            let shape = [self.frames.len() as u64, self.grid.height as u64, self.grid.width as u64];
+            let shape = [*count as u64, grid.height as u64, grid.width as u64];
             if array.shape() != shape || *array.data_type() != data_type::float32() {
                 return Err(self.reader.damaged(format!("{node}: not the shape or kind that was written")));
             }
-            let data = self.reader.plane(&node, &array, &[index as u64], self.grid, |v: f32| v)?;
-            let field = Field { grid: self.grid, data };
+            let data = self.reader.plane(&node, &array, &[(index - before) as u64], *grid, |v: f32| v)?;
+            let field = Field { grid: *grid, data };
             if let Some((x, y)) = field.first_non_finite() {
                 return Err(self.reader.damaged(format!("{node} is not finite at cell ({x}, {y})")));
             }
