@@ -6,12 +6,14 @@
 //!
 //! This room knows nothing of what a field means.
 
+mod blur;
 mod distance;
 mod field;
 mod parallel;
 mod resample;
 mod sample;
 
+pub use blur::blur;
 pub use distance::{Nearest, nearest_feature};
 pub use field::Field;
 pub use parallel::{for_each_row, map_cells, sum_f64, sum_rows};

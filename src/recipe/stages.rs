@@ -7,6 +7,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use serde_json::Value as Json;
 
 use crate::{
+    climate::ClimateParams,
     edit::{HardnessParams, ImportParams, UpliftParams, ZoomParams},
     erosion::StreamPowerParams,
     process::{Placement, Process, ProcessError},
@@ -117,6 +118,9 @@ fn table() -> Vec<StageKind> {
         ground::<t::RmpPeakParams>("rmp_peak", "Peak", "A mountain of many random Voronoi cells about a point."),
         ground::<t::RmpRidgeParams>("rmp_ridge", "Ridge", "A range of many random Voronoi cells along a drawn line."),
         ground::<t::RmpGraphParams>("rmp_graph", "Line-cut massif", "A massif of faces between random lines."),
+        row("climate", "Climate", "Wind, rain, temperature, snow line, and what grows.", |climate: ClimateParams, setting| {
+            Ok(climate.process(setting.placement))
+        }),
         StageKind {
             blends: true,
             ..row("import", "Import", "Lays a heightmap from a file into the ground.", |import: ImportParams, setting| {

@@ -8,7 +8,6 @@
 //!
 //! This room reads worlds and never changes them; it knows no process and no GPU.
 
-mod blur;
 mod coast;
 pub mod film;
 mod frame;

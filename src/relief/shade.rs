@@ -7,8 +7,8 @@
 //! exaggerated until the land's typical slope is a good one to light, then bent so that plains show their form and the
 //! steepest slopes keep detail.
 
-use super::{blur::blur, frame::Frame};
-use crate::grid::{Field, sum_rows};
+use super::frame::Frame;
+use crate::grid::{Field, blur, sum_rows};
 
 /// Compass azimuth and altitude in degrees, and weight.
 const LIGHTS: [(f64, f64, f64); 5] =

@@ -102,6 +102,8 @@ catalogue! {
     Deposit: "deposit", "Deposit", "m", [0.0, 500.0], Sequential, Kind::Continuous;
     /// Rain and snow of a year.
     Rain: "rain", "Rain", "mm/yr", [0.0, 3000.0], Sequential, Kind::Continuous;
+    /// What of the rain runs off to rivers in a year; the rest evaporates.
+    Runoff: "runoff", "Runoff", "mm/yr", [0.0, 2000.0], Sequential, Kind::Continuous;
     /// Mean temperature of a year at the ground.
     Temperature: "temperature", "Temperature", "degC", [-30.0, 30.0], Diverging, Kind::Continuous;
     /// Height above which snow outlasts the summer.

@@ -79,7 +79,7 @@ impl Boxes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{grid::Grid, relief::blur::blur};
+    use crate::grid::{Grid, blur};
 
     #[test]
     fn it_agrees_with_the_exact_blur() {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::grid::{Edges, Field, for_each_row};
+use super::{Edges, Field, for_each_row};
 
 /// The field smoothed with a Gaussian of `sigma_px` cells; the rim's value continues beyond it.
 pub fn blur(field: &Field<f32>, sigma_px: f64) -> Field<f32> {

@@ -1,0 +1,366 @@
+//! Moisture carried over the land by one wind, and the water it loses on the way.
+//!
+//! Two amounts of water stand over each square metre: vapour `W` and cloud `c`, kg/m² (mm). In steady state
+//!
+//! ```text
+//! ∇·(u W) = E − (a + b) W + g c + r c/τ        E = e (Wsat − W) over the sea, 0 on land
+//! ∇·(u c) =     (a + b) W − g c −   c/τ        rain = c/τ
+//! ```
+//!
+//! - `a = η max(u·∇h, 0)/H`: air that is forced up loses what it can no longer hold (`H`: scale height of vapour), in the
+//!   share `η` of the time in which it is moist enough; `g` likewise takes up cloud where air comes down. With the delay
+//!   `τ` this is the orographic model of Smith and Barstad (2004), with a budget: what fell can't fall again.
+//! - `b`: rain of weather systems, a mean stay of the vapour in the air; less where air has come down from a crest.
+//! - `e`: the sea brings the air towards saturation (bulk formula). On land a share `r` of the rain evaporates again.
+//!
+//! Scheme: first-order upwind finite volumes, so that water is kept to rounding; the system is triangular in the order of
+//! the wind, and solved in one sweep, two unknowns a cell. It is positive for every parameter. On a rim the air flows in
+//! with a stated humidity and leaves freely. On a map that wraps a row is closed exactly (it is linear in what enters it),
+//! the map by repeated laps.
+
+use crate::grid::{Edges, Field, Grid};
+
+use super::Zone;
+
+/// Density and exchange of moist air over the sea: a bulk coefficient times the wind of a usual day, m/s.
+const SEA_EXCHANGE_M_PER_S: f64 = 1.2e-3 * 7.0;
+/// Scale height of water vapour in the air, m.
+const VAPOUR_M: f64 = 2000.0;
+/// Mean stay of vapour in the air, s: eight days.
+const STAY_S: f64 = 8.0 * 86_400.0;
+/// Descent that takes up a cloud, m: fine drops are gone sooner than vapour comes.
+const CLOUD_M: f64 = 500.0;
+/// Descent that makes rain of weather systems rarer by e, m. Over a kilometre of it, warming by 9.8 K, relative humidity
+/// falls to 0.57 (Clausius-Clapeyron), and rain depends steeply on humidity (Bretherton, Peters and Back 2004).
+const DRY_M: f64 = 800.0;
+/// Share of the rain on land that evaporates there again and goes on with the wind.
+const RECYCLED: f64 = 0.4;
+/// Laps on a map that wraps end when nothing moves by more than this share.
+const STILL: f64 = 1e-12;
+const MOST_LAPS: usize = 200;
+
+/// Water that saturates the air over a sea of that temperature, kg/m² (Magnus's formula over water, gas law).
+pub fn saturation_mm(sea_degc: f64) -> f64 {
+    let t = sea_degc.clamp(-60.0, 60.0);
+    let pressure_pa = 610.94 * libm::exp(17.625 * t / (t + 243.04));
+    pressure_pa / (461.5 * (t + 273.15)) * VAPOUR_M
+}
+
+/// What the ground is to the air.
+#[derive(Clone, Debug)]
+pub struct Below {
+    /// Height over the sea, as smooth as air sees it, m.
+    pub height_m: Field<f32>,
+    /// Share of each cell under the sea.
+    pub sea: Field<f32>,
+    /// What latitude brings, a row each.
+    pub zones: Vec<Zone>,
+}
+
+/// How air behaves.
+#[derive(Clone, Copy, Debug)]
+pub struct Habits {
+    /// Fastest wind, m/s.
+    pub wind_m_per_s: f64,
+    /// Humidity of what comes in over the rim.
+    pub rim_humidity: f64,
+    /// Share of lifting that rains.
+    pub lift_share: f64,
+    /// Time that rain takes to form and fall, s.
+    pub delay_s: f64,
+    /// How far air stays dry that came down, m.
+    pub shadow_m: f64,
+}
+
+/// Where the water came from and where it went, kg/s.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Budget {
+    /// Evaporated from the sea.
+    pub from_sea: f64,
+    /// Came in over the rim.
+    pub from_rim: f64,
+    /// Stayed on the ground: rain less what evaporated again from land.
+    pub to_ground: f64,
+    /// Left over the rim.
+    pub to_rim: f64,
+}
+
+impl Budget {
+    /// What came in and is not accounted for, kg/s.
+    pub fn residual(&self) -> f64 {
+        self.from_sea + self.from_rim - self.to_ground - self.to_rim
+    }
+}
+
+/// A wind over the ground, solved.
+pub struct Air<'a> {
+    grid: Grid,
+    below: &'a Below,
+    habits: Habits,
+    /// Wind to the east in each row, m/s.
+    east: Vec<f64>,
+    /// Wind to the south through each row's northern side, and the last one's southern side, m/s.
+    south: Vec<f64>,
+    /// Rows, each after those that it gets air from.
+    order: Vec<usize>,
+    cells: Vec<Cell>,
+}
+
+/// Rates at a place, 1/s, and the water over it, mm.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cell {
+    rain_out: f64,
+    cloud_up: f64,
+    exchange: f64,
+    recycled: f64,
+    water: Water,
+}
+
+/// Vapour and cloud over a square metre, mm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Water {
+    vapour: f64,
+    cloud: f64,
+}
+
+impl Water {
+    fn plus(self, other: Water, times: f64) -> Water {
+        Water { vapour: self.vapour + other.vapour * times, cloud: self.cloud + other.cloud * times }
+    }
+}
+
+impl<'a> Air<'a> {
+    /// The air over the ground, under the zones' winds turned clockwise by an angle.
+    pub fn over(below: &'a Below, habits: Habits, turned_deg: f64) -> Self {
+        let grid = below.height_m.grid;
+        let (sine, cosine) = (libm::sin(turned_deg.to_radians()), libm::cos(turned_deg.to_radians()));
+        let wind: Vec<[f64; 2]> = below
+            .zones
+            .iter()
+            .map(|zone| [zone.wind[0] * cosine - zone.wind[1] * sine, zone.wind[0] * sine + zone.wind[1] * cosine])
+            .map(|wind| wind.map(|part| part * habits.wind_m_per_s))
+            .collect();
+        let rows = grid.height;
+        let side = |y: usize| 0.5 * (wind[y.max(1) - 1][1] + wind[y.min(rows - 1)][1]);
+        let south: Vec<f64> = (0..=rows).map(side).collect();
+        let east: Vec<f64> = wind.iter().map(|wind| wind[0]).collect();
+        let order = order(&south);
+        let mut air = Self { grid, below, habits, east, south, order, cells: vec![Cell::default(); grid.cells()] };
+        air.rate();
+        air.blow();
+        air
+    }
+
+    /// Rain, mm/s, row by row.
+    pub fn rain(&self) -> impl Iterator<Item = f64> + '_ {
+        self.cells.iter().map(|cell| cell.water.cloud / self.habits.delay_s)
+    }
+
+    /// Every cell's rates.
+    fn rate(&mut self) {
+        let shelter = self.shelter();
+        for y in 0..self.grid.height {
+            let (zone, wind) = (&self.below.zones[y], [self.east[y], 0.5 * (self.south[y] + self.south[y + 1])]);
+            for x in 0..self.grid.width {
+                let i = self.grid.index(x, y);
+                let [gx, gy] = self.below.height_m.gradient(x, y);
+                let lift = wind[0] * gx + wind[1] * gy;
+                let sea = self.below.sea.data[i] as f64;
+                self.cells[i] = Cell {
+                    rain_out: self.habits.lift_share * lift.max(0.0) / VAPOUR_M
+                        + zone.belt / STAY_S * libm::exp(-shelter[i] / DRY_M),
+                    cloud_up: (-lift).max(0.0) / CLOUD_M,
+                    exchange: sea * SEA_EXCHANGE_M_PER_S / VAPOUR_M,
+                    recycled: (1.0 - sea) * RECYCLED,
+                    water: Water::default(),
+                };
+            }
+        }
+    }
+
+    /// How far air has come down from the last crest, m: it remembers the crest's height for a while.
+    fn shelter(&self) -> Vec<f64> {
+        let height = &self.below.height_m.data;
+        let mut crest: Vec<f64> = height.iter().map(|&h| h as f64).collect();
+        let laps = if self.grid.edges == Edges::Wrap { 2 } else { 1 };
+        for &y in (0..laps).flat_map(|_| &self.order) {
+            for x in self.columns(y).chain(self.columns(y).filter(|_| laps > 1)) {
+                let (mut sum, mut inflow) = (0.0, 0.0);
+                for (rate, from) in self.inflows(x, y) {
+                    sum += rate * from.map_or(height[self.grid.index(x, y)] as f64, |j| crest[j]);
+                    inflow += rate;
+                }
+                if inflow <= 0.0 {
+                    continue;
+                }
+                let i = self.grid.index(x, y);
+                let (own, before) = (height[i] as f64, sum / inflow);
+                let speed = libm::hypot(self.east[y], 0.5 * (self.south[y] + self.south[y + 1])).max(1e-9);
+                let kept = libm::exp(-speed / (inflow * self.habits.shadow_m));
+                crest[i] = own.max(own + (before - own) * kept);
+            }
+        }
+        crest.iter().zip(height).map(|(crest, &own)| crest - own as f64).collect()
+    }
+
+    /// The columns of a row, down the wind.
+    fn columns(&self, y: usize) -> impl Iterator<Item = usize> + use<> {
+        let (width, back) = (self.grid.width, self.east[y] < 0.0);
+        (0..width).map(move |x| if back { width - 1 - x } else { x })
+    }
+
+    /// What flows into a cell: rates, 1/s, and from which cell; none for the rim.
+    fn inflows(&self, x: usize, y: usize) -> [(f64, Option<usize>); 4] {
+        let grid = &self.grid;
+        let wrap = grid.edges == Edges::Wrap;
+        let per_m = 1.0 / grid.cell_m;
+        let from = |inside: bool, dx: isize, dy: isize| {
+            (inside || wrap).then(|| grid.index(grid.column(x, dx), grid.row(y, dy)))
+        };
+        [
+            (self.east[y].max(0.0) * per_m, from(x > 0, -1, 0)),
+            ((-self.east[y]).max(0.0) * per_m, from(x + 1 < grid.width, 1, 0)),
+            (self.south[y].max(0.0) * per_m, from(y > 0, 0, -1)),
+            ((-self.south[y + 1]).max(0.0) * per_m, from(y + 1 < grid.height, 0, 1)),
+        ]
+    }
+
+    fn outflow(&self, y: usize) -> f64 {
+        (self.east[y].abs() + self.south[y + 1].max(0.0) + (-self.south[y]).max(0.0)) / self.grid.cell_m
+    }
+
+    /// What air brings over the rim: vapour, and the cloud that is on its way down in it.
+    fn beyond(&self, y: usize) -> Water {
+        let zone = &self.below.zones[y];
+        let vapour = self.habits.rim_humidity * saturation_mm(zone.sea_degc);
+        Water { vapour, cloud: vapour * zone.belt / STAY_S * self.habits.delay_s }
+    }
+
+    /// Carries the water over the map.
+    fn blow(&mut self) {
+        if self.grid.edges != Edges::Wrap {
+            for y in self.order.clone() {
+                self.sweep(y, None);
+            }
+            return;
+        }
+        for _ in 0..MOST_LAPS {
+            let before: Vec<Water> = self.cells.iter().map(|cell| cell.water).collect();
+            for y in self.order.clone() {
+                self.close(y);
+            }
+            self.balance();
+            let (mut moved, mut most) = (0.0f64, 0.0f64);
+            for (cell, before) in self.cells.iter().zip(&before) {
+                moved = moved.max((cell.water.vapour - before.vapour).abs());
+                most = most.max(cell.water.vapour);
+            }
+            if moved <= STILL * most {
+                break;
+            }
+        }
+    }
+
+    /// Solves a row that closes on itself: what leaves its end is linear in what enters its beginning.
+    fn close(&mut self, y: usize) {
+        if self.east[y] == 0.0 {
+            return self.sweep(y, None);
+        }
+        let mut end = |vapour: f64, cloud: f64| {
+            self.sweep(y, Some(Water { vapour, cloud }));
+            let last = self.columns(y).last().unwrap_or(0);
+            self.cells[self.grid.index(last, y)].water
+        };
+        let (none, one, other) = (end(0.0, 0.0), end(1.0, 0.0), end(0.0, 1.0));
+        let (a, c) = (one.vapour - none.vapour, one.cloud - none.cloud);
+        let (b, d) = (other.vapour - none.vapour, other.cloud - none.cloud);
+        let determinant = (1.0 - a) * (1.0 - d) - b * c;
+        let vapour = ((1.0 - d) * none.vapour + b * none.cloud) / determinant;
+        let cloud = (c * none.vapour + (1.0 - a) * none.cloud) / determinant;
+        self.sweep(y, Some(Water { vapour, cloud }));
+    }
+
+    /// Solves a row down the wind; `entry` is what flows into its first cell along the row, if it is not the rim's.
+    fn sweep(&mut self, y: usize, entry: Option<Water>) {
+        let (beyond, outflow) = (self.beyond(y), self.outflow(y));
+        let supply = saturation_mm(self.below.zones[y].sea_degc);
+        let falls = 1.0 / self.habits.delay_s;
+        let mut entry = entry;
+        for x in self.columns(y) {
+            let inflows = self.inflows(x, y);
+            let mut come = Water::default();
+            for (side, (rate, from)) in inflows.into_iter().enumerate().filter(|(_, (rate, _))| *rate > 0.0) {
+                let own = from.map_or(beyond, |j| self.cells[j].water);
+                come = come.plus(if side < 2 { entry.take().unwrap_or(own) } else { own }, rate);
+            }
+            let cell = &mut self.cells[y * self.grid.width + x];
+            let Cell { rain_out, cloud_up, exchange, recycled, .. } = *cell;
+            let (back, source) = (cloud_up + recycled * falls, come.vapour + exchange * supply);
+            let (vapour_out, cloud_out) = (outflow + rain_out + exchange, outflow + falls + cloud_up);
+            let determinant = vapour_out * cloud_out - back * rain_out;
+            cell.water = Water {
+                vapour: (cloud_out * source + back * come.cloud) / determinant,
+                cloud: (rain_out * source + vapour_out * come.cloud) / determinant,
+            };
+        }
+    }
+
+    /// On a map that wraps, all water in proportion, so that what evaporates is what falls: takes out the slowest error.
+    fn balance(&mut self) {
+        let (mut given, mut taken) = (0.0, 0.0);
+        for (i, cell) in self.cells.iter().enumerate() {
+            given += cell.exchange * saturation_mm(self.below.zones[i / self.grid.width].sea_degc);
+            let kept = (1.0 - cell.recycled) / self.habits.delay_s;
+            taken += cell.exchange * cell.water.vapour + kept * cell.water.cloud;
+        }
+        if taken > 0.0 {
+            let factor = given / taken;
+            for cell in &mut self.cells {
+                cell.water = Water::default().plus(cell.water, factor);
+            }
+        }
+    }
+
+    /// Where the water came from and where it went.
+    pub fn budget(&self) -> Budget {
+        let grid = &self.grid;
+        let area_m2 = grid.cell_area_m2();
+        let all = |water: Water| water.vapour + water.cloud;
+        let mut budget = Budget::default();
+        for y in 0..grid.height {
+            let supply = saturation_mm(self.below.zones[y].sea_degc);
+            for x in 0..grid.width {
+                let cell = &self.cells[grid.index(x, y)];
+                budget.from_sea += cell.exchange * (supply - cell.water.vapour) * area_m2;
+                budget.to_ground += (1.0 - cell.recycled) * cell.water.cloud / self.habits.delay_s * area_m2;
+                if grid.edges == Edges::Wrap {
+                    continue;
+                }
+                let open = self.inflows(x, y).into_iter().filter(|(_, from)| from.is_none());
+                budget.from_rim += open.map(|(rate, _)| rate * all(self.beyond(y)) * area_m2).sum::<f64>();
+                let mut out = 0.0;
+                out += if x == 0 { (-self.east[y]).max(0.0) } else { 0.0 };
+                out += if x + 1 == grid.width { self.east[y].max(0.0) } else { 0.0 };
+                out += if y == 0 { (-self.south[y]).max(0.0) } else { 0.0 };
+                out += if y + 1 == grid.height { self.south[y + 1].max(0.0) } else { 0.0 };
+                budget.to_rim += out / grid.cell_m * all(cell.water) * area_m2;
+            }
+        }
+        budget
+    }
+}
+
+/// Rows, each after those that air comes from; `south` is the wind through the rows' sides.
+fn order(south: &[f64]) -> Vec<usize> {
+    let rows = south.len() - 1;
+    let mut order = Vec::with_capacity(rows);
+    // A run of rows that air crosses northwards is turned around: it is entered from its south.
+    let mut first = 0;
+    for y in 0..rows {
+        if y + 1 == rows || south[y + 1] >= 0.0 {
+            order.extend((first..=y).rev());
+            first = y + 1;
+        }
+    }
+    order
+}
