@@ -25,7 +25,13 @@ fn grown(size: &str) -> World {
 }
 
 fn options() -> Options {
-    Options { size: SIZE, view: View::Relief, range_m: [-8000.0, 6000.0], title: Some("Film".to_owned()) }
+    Options {
+        size: SIZE,
+        view: View::Relief,
+        range_m: [-8000.0, 6000.0],
+        climate: false,
+        title: Some("Film".to_owned()),
+    }
 }
 
 /// A map that fills the picture, and a square one.

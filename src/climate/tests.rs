@@ -227,16 +227,17 @@ fn larger_maps_have_the_same_weather() {
         Weather::over(&height, 0.0, &ClimateParams::default(), None).rain_mm_per_yr
     };
     let (small, large) = (over(128), over(512));
-    let mut apart = 0.0f64;
+    let (mut apart, mut sum) = (0.0f64, 0.0);
     for y in 0..128 {
         for x in 0..128 {
             let block = |i: usize| large.at(4 * x + i % 4, 4 * y + i / 4) as f64;
             let mean = (0..16).map(block).sum::<f64>() / 16.0;
-            apart = apart.max((small.at(x, y) as f64 / mean - 1.0).abs());
+            let own = (small.at(x, y) as f64 / mean - 1.0).abs();
+            (apart, sum) = (apart.max(own), sum + own);
         }
     }
-    // Coasts are whole cells: a quarter of one is 2 km of 8.
-    assert!(apart < 0.05, "{apart}");
+    // Crests are rounded by cells of 8 km, which shows where a shadow is deepest.
+    assert!(apart < 0.15 && sum / 16_384.0 < 0.01, "{apart} {sum}");
 }
 
 #[test]

@@ -15,7 +15,7 @@ const EQUATOR_DEGC: f64 = 28.0;
 const POLE_COLDER_K: f64 = 37.0;
 /// How much warmer than the year the warmest month is, on the equator, and how much more at the poles, K.
 const SUMMER_K: f64 = 1.0;
-const SUMMER_POLE_K: f64 = 11.5;
+const SUMMER_POLE_K: f64 = 13.0;
 /// Moist adiabats are less steep: an eighth where the sea is as warm as in the tropics, nothing where it is cool.
 const MOIST_SHARE: f64 = 0.125;
 const MOIST_DEGC: [f64; 2] = [15.0, 27.0];

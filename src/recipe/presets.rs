@@ -36,6 +36,7 @@ const ALL: &[Preset] = presets! {
     "rmp-ridge"
     "rmp-graph"
     "erode-my-map"
+    "rain-shadow"
 };
 
 /// Every preset.

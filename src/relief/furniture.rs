@@ -1,6 +1,7 @@
 //! What stands around a map: margin and frame, title, scale bar, legend.
 
 use super::{
+    cover::{ARID, HUMID, Tints},
     frame::Frame,
     layers::round_up,
     marks::{Canvas, Ink},
@@ -21,10 +22,23 @@ impl Ticks {
     pub fn over([low, high]: [f64; 2]) -> Self {
         Self(nice(low, high, 5).into_iter().map(|v| (((v - low) / (high - low)) as f32, number(v))).collect())
     }
+
+    /// Powers of ten over a range of their logarithms.
+    pub fn powers([low, high]: [f64; 2]) -> Self {
+        let powers = libm::ceil(low - 1e-9) as i32..=libm::floor(high + 1e-9) as i32;
+        let place = |power: i32| ((f64::from(power) - low) / (high - low)) as f32;
+        Self(powers.map(|power| (place(power), number(libm::pow(10.0, f64::from(power))))).collect())
+    }
 }
 
 enum Body {
-    Bar { colours: Vec<Rgb>, ticks: Ticks, sea: Option<f32> },
+    /// The lower half of the bar may have other colours.
+    Bar {
+        colours: Vec<Rgb>,
+        lower: Option<Vec<Rgb>>,
+        ticks: Ticks,
+        sea: Option<f32>,
+    },
     Swatches(Vec<(Rgb, String)>),
 }
 
@@ -47,8 +61,11 @@ impl Legend {
 
     /// A bar of colours from 0 to 1.
     pub fn bar(title: String, colour: impl Fn(f64) -> Rgb, ticks: Ticks) -> Self {
-        let colours = (0..Self::SAMPLES).map(|i| colour((i as f64 + 0.5) / Self::SAMPLES as f64)).collect();
-        Self { title, body: Body::Bar { colours, ticks, sea: None } }
+        Self { title, body: Body::Bar { colours: Self::sampled(colour), lower: None, ticks, sea: None } }
+    }
+
+    fn sampled(colour: impl Fn(f64) -> Rgb) -> Vec<Rgb> {
+        (0..Self::SAMPLES).map(|i| colour((i as f64 + 0.5) / Self::SAMPLES as f64)).collect()
     }
 
     /// Named colours.
@@ -58,6 +75,18 @@ impl Legend {
 
     /// The tints, the sea's depths on the left and the land's heights on the right, each to its own scale.
     pub fn heights(scene: &Scene) -> Self {
+        Self::split(scene, |height_m| scene.land(height_m), None::<fn(f32) -> Rgb>)
+    }
+
+    /// The same where climate colours the land: humid above, dry below.
+    pub fn climates(scene: &Scene) -> Self {
+        let (tints, sea_m) = (Tints::new(), scene.sea_m as f32);
+        let humid = |height_m: f32| tints.at(HUMID, height_m, sea_m);
+        let dry = |height_m: f32| tints.at(ARID, height_m, sea_m);
+        Self::split(scene, humid, Some(dry)).titled("Height, m; land of humid climate above, of dry below".to_owned())
+    }
+
+    fn split(scene: &Scene, land: impl Fn(f32) -> Rgb, lower: Option<impl Fn(f32) -> Rgb>) -> Self {
         let [low, high] = scene.range_m;
         let sea = scene.sea_m;
         let split = match (low < sea, high > sea) {
@@ -67,11 +96,11 @@ impl Legend {
         };
         // A map of one height still has a bar.
         let (bottom, top) = if split == 0.0 { (low, high.max(low + 1.0)) } else { (sea, high) };
-        let colour = |t: f64| {
+        let colour = |t: f64, land: &dyn Fn(f32) -> Rgb| {
             if t < split {
                 scene.sea((low + (sea - low) * t / split) as f32)
             } else {
-                scene.land((bottom + (top - bottom) * (t - split) / (1.0 - split)) as f32)
+                land((bottom + (top - bottom) * (t - split) / (1.0 - split)) as f32)
             }
         };
         let mut ticks = Vec::new();
@@ -85,9 +114,10 @@ impl Legend {
             let dry = nice(bottom, top, 4).into_iter().filter(|&v| v >= foot);
             ticks.extend(dry.map(|v| ((split + (v - bottom) / (top - bottom) * (1.0 - split)) as f32, number(v))));
         }
-        let mut legend = Self::bar("Height, m".to_owned(), colour, Ticks(ticks));
-        if let Body::Bar { sea, .. } = &mut legend.body {
+        let mut legend = Self::bar("Height, m".to_owned(), |t| colour(t, &land), Ticks(ticks));
+        if let Body::Bar { sea, lower: below, .. } = &mut legend.body {
             *sea = (split > 0.0 && split < 1.0).then_some(split as f32);
+            *below = lower.map(|land| Self::sampled(|t| colour(t, &land)));
         }
         legend
     }
@@ -103,20 +133,27 @@ impl Legend {
         let size = 13.0 * u;
         text::write(canvas, &self.title, [x, y + 11.0 * u], size, Align::Left, INK);
         match &self.body {
-            Body::Bar { colours, ticks, sea } => draw_bar(canvas, [x, y + 20.0 * u], width, u, (colours, ticks, *sea)),
+            Body::Bar { colours, lower, ticks, sea } => {
+                let lower = lower.as_deref().unwrap_or(colours);
+                draw_bar(canvas, [x, y + 20.0 * u], width, u, ([colours, lower], ticks, *sea));
+            }
             Body::Swatches(swatches) => draw_swatches(canvas, [x, y + 20.0 * u], width, u, swatches),
         }
     }
 }
 
-fn draw_bar(canvas: &mut Canvas, [x, y]: [f32; 2], width: f32, u: f32, bar: (&[Rgb], &Ticks, Option<f32>)) {
+fn draw_bar(canvas: &mut Canvas, [x, y]: [f32; 2], width: f32, u: f32, bar: ([&[Rgb]; 2], &Ticks, Option<f32>)) {
     let (colours, ticks, sea) = bar;
     let encoder = Encoder::new();
     let tall = 14.0 * u;
     let columns = width.round() as usize;
-    for column in 0..columns {
-        let colour = colours[(column * colours.len() / columns).min(colours.len() - 1)];
-        canvas.rect([x.round() + column as f32, y.round()], [1.0, tall.round()], Ink::linear(colour, &encoder));
+    let half = (0.5 * tall).round();
+    for (colours, from, to) in [(colours[0], 0.0, half), (colours[1], half, tall.round())] {
+        for column in 0..columns {
+            let colour = colours[(column * colours.len() / columns).min(colours.len() - 1)];
+            let at = [x.round() + column as f32, y.round() + from];
+            canvas.rect(at, [1.0, to - from], Ink::linear(colour, &encoder));
+        }
     }
     canvas.frame([x.round() - 0.5, y.round() - 0.5], [columns as f32 + 1.0, tall.round() + 1.0], 1.0, INK);
     let size = 12.0 * u;

@@ -7,8 +7,9 @@ use super::{
     coast::Coast,
     frame::Frame,
     furniture::{Legend, Ticks},
-    palette::{Ramp, Rgb, hex, lch, mix},
+    palette::{Rgb, hex, mix},
     shade::shade,
+    swatches::{Colours, Scale, named},
     tint::{Scene, lit},
 };
 use crate::{
@@ -16,13 +17,6 @@ use crate::{
     world::{Kind, Layer, Palette, Spec},
 };
 
-/// Colours of what plate boundaries do, in the catalogue's order; the overlay draws with them too.
-pub const BOUNDARIES: [u32; 5] = [0xe6e2d8, 0xc8283c, 0x7b2d8e, 0xe8871e, 0x2f8f4e];
-
-const SEQUENTIAL: [u32; 6] = [0x2a1a50, 0x33508c, 0x2c7f90, 0x3fa878, 0x9acd58, 0xf8e962];
-const DIVERGING: [u32; 7] = [0x233f8f, 0x4f83c4, 0xa9c9e6, 0xf5f3ee, 0xf0b795, 0xd2604f, 0x8c1b33];
-const AGE: [u32; 7] = [0x9c1430, 0xdf5a3c, 0xf6ad55, 0xf3e6a0, 0x93ccac, 0x4191b8, 0x3a4796];
-const SLOPE: [u32; 6] = [0xf4f2ec, 0xdbd5c8, 0xe5bd80, 0xdb7a4c, 0xa9272c, 0x590e26];
 /// How strongly a layer's colours are shaded.
 pub const SHADING: f32 = 0.28;
 /// More identities than these get no legend of their own.
@@ -45,8 +39,8 @@ pub fn draw(
             (values.data.iter().map(|&v| scene.at(v)).collect(), Legend::heights(&scene).titled(title(&spec)))
         }
         Kind::Continuous => continuous(frame, field, &spec),
-        Kind::Id => identities(frame, field, &spec),
-        Kind::Class(names) => classes(frame, field, &spec, names),
+        Kind::Id => identities(frame, field, layer),
+        Kind::Class(names) => classes(frame, field, layer, names),
     };
     (over_ground(frame, colours, heights, scene, options), legend)
 }
@@ -56,24 +50,14 @@ fn title(spec: &Spec) -> String {
 }
 
 fn continuous(frame: &Frame, field: &Field<f32>, spec: &Spec) -> (Vec<Rgb>, Legend) {
-    let range = span(field, spec);
-    let ramp = Ramp::even(codes(spec.palette), range);
+    let scale = Scale::over(spec, span(field, spec));
     let values = frame.continuous(field);
-    let legend = ramp_legend(spec, &ramp, range);
-    (values.data.iter().map(|&v| ramp.at(v)).collect(), legend)
+    (values.data.iter().map(|&v| scale.at(v)).collect(), scale_legend(spec, &scale))
 }
 
-fn codes(palette: Palette) -> &'static [u32] {
-    match palette {
-        Palette::Diverging => &DIVERGING,
-        Palette::Age => &AGE,
-        Palette::Slope => &SLOPE,
-        _ => &SEQUENTIAL,
-    }
-}
-
-fn ramp_legend(spec: &Spec, ramp: &Ramp, range: [f64; 2]) -> Legend {
-    Legend::bar(title(spec), |t| ramp.at((range[0] + (range[1] - range[0]) * t) as f32), Ticks::over(range))
+fn scale_legend(spec: &Spec, scale: &Scale) -> Legend {
+    let ticks = if scale.powers() { Ticks::powers(scale.ends()) } else { Ticks::over(scale.ends()) };
+    Legend::bar(title(spec), |t| scale.between(t), ticks)
 }
 
 /// The catalogue's range, so that pictures compare; another one where the values leave it or fill less than a fifth.
@@ -82,7 +66,8 @@ fn span(field: &Field<f32>, spec: &Spec) -> [f64; 2] {
     let mut sorted = field.data.clone();
     sorted.par_sort_unstable_by(f32::total_cmp);
     let last = sorted.len().saturating_sub(1);
-    let odd = last / 200;
+    // What goes by powers of ten is about its few greatest values.
+    let odd = if spec.palette == Palette::Flow { 0 } else { last / 200 };
     let (low, high) = (sorted[odd] as f64, sorted[last - odd] as f64);
     let [from, to] = spec.range;
     let diverging = spec.palette == Palette::Diverging;
@@ -105,83 +90,36 @@ pub fn round_up(value: f64) -> f64 {
     [1.0, 2.0, 5.0].map(|m| m * ten).into_iter().find(|&nice| nice >= value * (1.0 - 1e-9)).unwrap_or(10.0 * ten)
 }
 
-/// A colour for an identity, far from those of its neighbours in number: hues by the golden angle.
-fn identity(id: f32) -> Rgb {
-    let i = id as f64;
-    let third = i.rem_euclid(3.0);
-    lch(0.66 + 0.07 * third, 0.10 + 0.012 * third, 30.0 + i * 137.507_764)
-}
-
-fn identities(frame: &Frame, field: &Field<f32>, spec: &Spec) -> (Vec<Rgb>, Legend) {
+fn identities(frame: &Frame, field: &Field<f32>, layer: Layer) -> (Vec<Rgb>, Legend) {
     let values = frame.nearest(field);
     let mut ids: Vec<i64> = values.data.iter().map(|&v| v as i64).collect();
     ids.sort_unstable();
     ids.dedup();
     let swatches = if ids.len() > MOST_SWATCHES { Vec::new() } else { ids };
-    let swatches = swatches.into_iter().map(|id| (identity(id as f32), id.to_string())).collect();
-    let colour = |&v: &f32| identity(v);
-    (values.data.iter().map(colour).collect(), Legend::swatches(title(spec), swatches))
+    let swatches = swatches.into_iter().map(|id| (named(layer, id as f32), id.to_string())).collect();
+    (values.data.iter().map(|&v| named(layer, v)).collect(), Legend::swatches(title(&layer.spec()), swatches))
 }
 
-fn classes(frame: &Frame, field: &Field<f32>, spec: &Spec, names: &[&str]) -> (Vec<Rgb>, Legend) {
+fn classes(frame: &Frame, field: &Field<f32>, layer: Layer, names: &[&str]) -> (Vec<Rgb>, Legend) {
     let values = frame.nearest(field);
-    (values.data.iter().map(|&v| class(v as usize)).collect(), class_legend(spec, names))
+    (values.data.iter().map(|&v| named(layer, v)).collect(), class_legend(layer, names))
 }
 
-fn class(i: usize) -> Rgb {
-    BOUNDARIES.get(i).map_or_else(|| identity(i as f32), |&code| hex(code))
-}
-
-fn class_legend(spec: &Spec, names: &[&str]) -> Legend {
-    let swatches = names.iter().enumerate().map(|(i, &name)| (class(i), name.to_owned())).collect();
-    Legend::swatches(title(spec), swatches)
-}
-
-/// A layer's colours on a scale that does not depend on any world, for films.
-pub enum Colours {
-    /// A quantity, over the catalogue's range.
-    Ramp(Ramp),
-    /// Identities.
-    Ids,
-    /// Named classes.
-    Classes,
-}
-
-impl Colours {
-    /// Those of a layer; `None` where heights' own colours serve.
-    pub fn fixed(layer: Layer) -> Option<Self> {
-        let spec = layer.spec();
-        match spec.kind {
-            Kind::Continuous if spec.palette == Palette::Elevation => None,
-            Kind::Continuous => Some(Colours::Ramp(Ramp::even(codes(spec.palette), spec.range))),
-            Kind::Id => Some(Colours::Ids),
-            Kind::Class(_) => Some(Colours::Classes),
-        }
-    }
-
-    /// Whether values are names, which have no between.
-    pub fn named(&self) -> bool {
-        !matches!(self, Colours::Ramp(_))
-    }
-
-    /// The colour of a value.
-    pub fn at(&self, value: f32) -> Rgb {
-        match self {
-            Colours::Ramp(ramp) => ramp.at(value),
-            Colours::Ids => identity(value),
-            Colours::Classes => class(value as usize),
-        }
-    }
+fn class_legend(layer: Layer, names: &[&str]) -> Legend {
+    let swatches = names.iter().enumerate().map(|(i, &name)| (named(layer, i as f32), name.to_owned())).collect();
+    Legend::swatches(title(&layer.spec()), swatches)
 }
 
 /// What the colours of a film mean.
-pub fn fixed_legend(view: &View, scene: &Scene) -> Legend {
-    let View::Layer(layer) = view else { return Legend::heights(scene) };
+pub fn fixed_legend(view: &View, scene: &Scene, climate: bool) -> Legend {
+    let View::Layer(layer) = view else {
+        return if climate { Legend::climates(scene) } else { Legend::heights(scene) };
+    };
     let spec = layer.spec();
     match (Colours::fixed(*layer), spec.kind) {
         (None, _) => Legend::heights(scene).titled(title(&spec)),
-        (Some(Colours::Ramp(ramp)), _) => ramp_legend(&spec, &ramp, spec.range),
-        (Some(_), Kind::Class(names)) => class_legend(&spec, names),
+        (Some(Colours::Scale(scale)), _) => scale_legend(&spec, &scale),
+        (Some(_), Kind::Class(names)) => class_legend(*layer, names),
         // Which identities there will be, nobody knows.
         _ => Legend::swatches(title(&spec), Vec::new()),
     }
@@ -212,22 +150,7 @@ fn over_ground(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        grid::{Edges, Grid},
-        relief::palette::Encoder,
-    };
-
-    #[test]
-    fn neighbouring_identities_differ() {
-        let encoder = Encoder::new();
-        let colours: Vec<[u8; 3]> = (0..40).map(|id| encoder.bytes(identity(id as f32))).collect();
-        let apart = |a: [u8; 3], b: [u8; 3]| a.iter().zip(b).map(|(a, b)| a.abs_diff(b) as u32).sum::<u32>();
-        for i in 0..40 {
-            for j in i + 1..(i + 6).min(40) {
-                assert!(apart(colours[i], colours[j]) > 40, "{i} {j}");
-            }
-        }
-    }
+    use crate::grid::{Edges, Grid};
 
     #[test]
     fn ranges_fit_the_values() {

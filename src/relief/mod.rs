@@ -2,13 +2,14 @@
 //! legend, scale bar, plate borders and motions.
 //!
 //! A picture is made in passes over its pixels, rows in parallel: heights are brought to the picture's raster
-//! (`frame`), lit (`shade`), coloured by height (`tint`, `palette`), the coast is drawn (`coast`), plates are laid over
+//! (`frame`), lit (`shade`), coloured by height (`tint`, `palette`) and climate (`cover`), the coast is drawn (`coast`), plates are laid over
 //! it (`overlay`), and what stands around the map is added (`furniture`, `text`). Same world, same bits, for any
 //! number of threads. A film draws the same map at its own size and one scale of colours, quicker ([`film`]).
 //!
 //! This room reads worlds and never changes them; it knows no process and no GPU.
 
 mod coast;
+mod cover;
 pub mod film;
 mod frame;
 mod furniture;
@@ -18,9 +19,11 @@ mod overlay;
 mod palette;
 mod shade;
 mod sheet;
+mod swatches;
 mod text;
 mod tint;
 
+pub use cover::LAYERS as CLIMATE;
 pub use sheet::contact_sheet;
 
 use image::RgbImage;
@@ -105,7 +108,14 @@ pub fn map(world: &World, view: &View, options: &Options) -> Result<RgbImage, Re
     let heights = frame.continuous(&ground);
     let scene = tint::Scene::new(&ground, world.sea_level_m);
     let (pixels, legend) = match view {
-        View::Relief => (tint::relief(&frame, &heights, &scene, options), furniture::Legend::heights(&scene)),
+        View::Relief => {
+            let cover = cover::Cover::of(world, |field| frame.continuous(field));
+            let legend = match &cover {
+                Some(_) => furniture::Legend::climates(&scene),
+                None => furniture::Legend::heights(&scene),
+            };
+            (tint::relief(&frame, &heights, &scene, cover.as_ref(), options), legend)
+        }
         View::Layer(layer) => {
             let field = world.view(*layer).ok_or_else(|| absent(world, *layer))?;
             let field = finite(*layer, field)?;

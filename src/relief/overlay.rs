@@ -6,8 +6,8 @@
 use super::{
     frame::Frame,
     furniture::Symbol,
-    layers::BOUNDARIES,
     marks::{Canvas, Ink},
+    swatches::BOUNDARIES,
     text::{self, Align},
 };
 use crate::{

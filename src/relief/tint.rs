@@ -7,6 +7,7 @@
 use super::{
     Options,
     coast::Coast,
+    cover::Cover,
     frame::Frame,
     palette::{Ramp, Rgb, each, hex, mix},
     shade::shade,
@@ -101,7 +102,13 @@ impl Scene {
 }
 
 /// The shaded, coloured map, in linear light.
-pub fn relief(frame: &Frame, heights: &Field<f32>, scene: &Scene, options: &Options) -> Vec<Rgb> {
+pub fn relief(
+    frame: &Frame,
+    heights: &Field<f32>,
+    scene: &Scene,
+    cover: Option<&Cover>,
+    options: &Options,
+) -> Vec<Rgb> {
     let sea = scene.sea_m as f32;
     let has_land = scene.range_m[1] > scene.sea_m;
     let tone = shade(frame, heights, |h| h > sea || !has_land, options.exaggeration);
@@ -110,7 +117,9 @@ pub fn relief(frame: &Frame, heights: &Field<f32>, scene: &Scene, options: &Opti
     let mut pixels = vec![[0.0; 3]; frame.grid.cells()];
     crate::grid::map_cells(&mut pixels, frame.grid.width, |x, y| {
         let halo = || Brush::halo(coast.offshore_px.at(x, y), unit);
-        let place = Place { height_m: heights.at(x, y), tone: tone.at(x, y), land: coast.land.at(x, y) };
+        let (i, height_m, land) = (heights.grid.index(x, y), heights.at(x, y), coast.land.at(x, y));
+        let ground = cover.filter(|_| land > 0.0).map(|cover| cover.at(i, height_m));
+        let place = Place { height_m, tone: tone.at(x, y), land, ground };
         brush.pixel(scene, place, coast.line_px.at(x, y), halo)
     });
     pixels
@@ -125,6 +134,8 @@ pub struct Place {
     pub tone: f32,
     /// Share of it that is land.
     pub land: f32,
+    /// The land's flat colour, where it is not that of its height.
+    pub ground: Option<Rgb>,
 }
 
 /// Colours a map's pixels.
@@ -160,13 +171,14 @@ impl Brush {
     /// A pixel in linear light.
     #[inline(always)]
     pub fn pixel(&self, scene: &Scene, place: Place, line_px: f32, halo: impl Fn() -> f32) -> Rgb {
-        let Place { height_m, tone, land } = place;
+        let Place { height_m, tone, land, ground } = place;
         let sea = scene.sea_m as f32;
+        let dry = || lit(ground.unwrap_or_else(|| scene.land(height_m.max(sea))), tone);
         let ground = if land >= 1.0 {
-            lit(scene.land(height_m.max(sea)), tone)
+            dry()
         } else {
             let wet = self.glowing(lit_floor(scene.sea(height_m.min(sea)), tone * 0.5), halo());
-            if land > 0.0 { mix(wet, lit(scene.land(height_m.max(sea)), tone), land) } else { wet }
+            if land > 0.0 { mix(wet, dry(), land) } else { wet }
         };
         mix(ground, self.ink, 0.62 * (self.half_line_px - line_px).clamp(0.0, 1.0))
     }

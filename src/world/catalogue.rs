@@ -24,6 +24,12 @@ pub enum Palette {
     Age,
     /// Steepness, grey to red.
     Slope,
+    /// Parched to soaked.
+    Rain,
+    /// Paper to deep water.
+    Water,
+    /// The same by powers of ten, for what flows.
+    Flow,
     /// Distinct colours.
     Categorical,
 }
@@ -101,9 +107,9 @@ catalogue! {
     /// Sediment laid down since the world began.
     Deposit: "deposit", "Deposit", "m", [0.0, 500.0], Sequential, Kind::Continuous;
     /// Rain and snow of a year.
-    Rain: "rain", "Rain", "mm/yr", [0.0, 3000.0], Sequential, Kind::Continuous;
+    Rain: "rain", "Rain", "mm/yr", [0.0, 3000.0], Rain, Kind::Continuous;
     /// What of the rain runs off to rivers in a year; the rest evaporates.
-    Runoff: "runoff", "Runoff", "mm/yr", [0.0, 2000.0], Sequential, Kind::Continuous;
+    Runoff: "runoff", "Runoff", "mm/yr", [0.0, 2000.0], Rain, Kind::Continuous;
     /// Mean temperature of a year at the ground.
     Temperature: "temperature", "Temperature", "degC", [-30.0, 30.0], Diverging, Kind::Continuous;
     /// Height above which snow outlasts the summer.
@@ -113,17 +119,18 @@ catalogue! {
         Kind::Class(&["sea", "ice", "tundra", "taiga", "temperate forest", "temperate rain forest", "grassland",
             "shrubland", "desert", "savanna", "tropical dry forest", "tropical rain forest"]);
     /// Water that runs off through a cell, a year's mean.
-    Discharge: "discharge", "Discharge", "m3/s", [0.0, 5000.0], Sequential, Kind::Continuous;
+    Discharge: "discharge", "Discharge", "m3/s", [0.0, 5000.0], Flow, Kind::Continuous;
     /// Width of the river at bank-full flow; 0 where none runs.
-    RiverWidth: "river_width", "River width", "m", [0.0, 500.0], Sequential, Kind::Continuous;
+    RiverWidth: "river_width", "River width", "m", [0.0, 500.0], Water, Kind::Continuous;
     /// Depth of the river at bank-full flow.
-    RiverDepth: "river_depth", "River depth", "m", [0.0, 20.0], Sequential, Kind::Continuous;
+    RiverDepth: "river_depth", "River depth", "m", [0.0, 20.0], Water, Kind::Continuous;
     /// Depth of standing water on land.
-    LakeDepth: "lake_depth", "Lake depth", "m", [0.0, 200.0], Sequential, Kind::Continuous;
+    LakeDepth: "lake_depth", "Lake depth", "m", [0.0, 200.0], Water, Kind::Continuous;
     /// Which river's basin the cell lies in, numbered from the largest, 1; 0 in the sea.
     Basin: "basin", "Basin", "1", [0.0, 255.0], Categorical, Kind::Id;
     /// Strahler's order of the stream; 0 where none runs.
-    StreamOrder: "stream_order", "Stream order", "1", [0.0, 9.0], Sequential, Kind::Continuous;
+    StreamOrder: "stream_order", "Stream order", "1", [0.0, 9.0], Categorical,
+        Kind::Class(&["none", "1", "2", "3", "4", "5", "6", "7", "8", "9"]);
 }
 
 impl Layer {

@@ -43,6 +43,8 @@ const CASES: &[Case] = &[
     case("rmp_peak", "blend = 'max'\n"),
     case("rmp_ridge", "mask = 'slope'\n"),
     case("rmp_graph", "blend = 'min'\n"),
+    case("climate", ""),
+    case("climate", "rain_mm_per_yr = 800.0\nmask = 'height > 0'\n"),
     case("import", ""),
     Case { kind: "stream_power", params: "duration_myr = 0.5\n", may_leave_out: &[Layer::Lava] },
     Case {

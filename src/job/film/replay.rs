@@ -9,7 +9,7 @@ use super::{Film, FilmPlan, FilmRequest, pace, request};
 use crate::{
     job::{Event, JobError, open_world},
     recipe::{Overrides, Plan, Source},
-    relief::View,
+    relief::{CLIMATE, View},
     timeline::{Moment, TimelineError},
     world::{
         World,
@@ -76,6 +76,7 @@ fn plan(
             kept.join(", ")
         )));
     }
+    planned.animation.climate = CLIMATE.iter().all(|layer| recording.layers().contains(layer));
     let per_second = planned.encoding.rate.per_second();
     let stages = recording.frames().last().map_or(0, |frame| frame.stage + 1);
     planned.clips = match &recipe {

@@ -13,7 +13,7 @@ use crate::{
     export::video::{Encoder, Format, Rate, Settings},
     job::{JobError, grow::run, picture},
     recipe::Plan,
-    relief::{View, film},
+    relief::{CLIMATE, View, film},
     world::{Layer, World},
 };
 
@@ -64,9 +64,11 @@ impl FilmPlan {
         cancel: &AtomicBool,
     ) -> Result<Self, JobError> {
         let (mut planned, view) = Self::of(request, &plan.title)?;
+        let made = made(plan, until)?;
         if let View::Layer(layer) = view {
-            check_layer(plan, until, layer)?;
+            check_layer(&made, layer)?;
         }
+        planned.animation.climate = CLIMATE.iter().all(|layer| made.contains(layer));
         planned.animation.range_m = range_over_sea(plan, until, cancel)?;
         planned.clips = clips(plan, until, planned.encoding.rate.per_second());
         Ok(planned)
@@ -89,7 +91,7 @@ impl FilmPlan {
         }
         let view = picture::view(&request.view)?;
         let ffmpeg_args = request.ffmpeg_args.clone();
-        let animation = film::Options { size, view, range_m: EARTH_M, title: Some(title.to_owned()) };
+        let animation = film::Options { size, view, range_m: EARTH_M, climate: false, title: Some(title.to_owned()) };
         let planned = Self {
             in_folder: request.file.is_none(),
             encoding: Settings { format, size, rate, hold_s: HOLD_S, ffmpeg_args },
@@ -125,13 +127,18 @@ fn check_place(file: &Path, format: Format) -> Result<(), JobError> {
     Ok(())
 }
 
-/// Refuses a layer that no stage makes.
-fn check_layer(plan: &Plan, until: Option<usize>, layer: Layer) -> Result<(), JobError> {
+/// The layers that the stages make.
+fn made(plan: &Plan, until: Option<usize>) -> Result<Vec<Layer>, JobError> {
     let mut made: Vec<Layer> = Vec::new();
     for (_, stage) in plan.running().filter(|(i, _)| until.is_none_or(|end| *i <= end)) {
         let process = stage.build().map_err(|e| JobError::Refused(e.to_string()))?;
         made.extend(process.writes());
     }
+    Ok(made)
+}
+
+/// Refuses a layer that no stage makes.
+fn check_layer(made: &[Layer], layer: Layer) -> Result<(), JobError> {
     if layer.derived() || made.contains(&layer) {
         return Ok(());
     }

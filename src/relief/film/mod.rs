@@ -21,9 +21,10 @@ pub use shot::Shot;
 use super::{
     ReliefError, View,
     frame::unit_of,
-    layers::{self, Colours},
+    layers,
     palette::Encoder,
     shade::Lamps,
+    swatches::Colours,
     tint::{Brush, Scene},
 };
 use crate::{
@@ -45,6 +46,8 @@ pub struct Options {
     /// Lowest and highest ground to be expected, m over the sea. More than 1500 m apart, they make no difference: a
     /// colour then stands for the same metres on every map.
     pub range_m: [f64; 2],
+    /// Whether there will be weather, by which the relief is then coloured.
+    pub climate: bool,
     /// The film's name.
     pub title: Option<String>,
 }
@@ -94,7 +97,7 @@ impl Animation {
         };
         let (encoder, brush) = (Encoder::new(), Brush::new(unit_of(&map)));
         let tints = Tints::new(&scene, &brush, &encoder);
-        let legend = layers::fixed_legend(&options.view, &scene);
+        let legend = layers::fixed_legend(&options.view, &scene, options.climate);
         Self {
             map,
             size: options.size,

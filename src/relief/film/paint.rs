@@ -33,6 +33,22 @@ impl Between<'_> {
     }
 }
 
+/// The land's flat colours between two shots, of which at least one has weather.
+struct Ground<'a> {
+    from: Option<&'a [Rgb]>,
+    to: Option<&'a [Rgb]>,
+    share: f32,
+}
+
+impl Ground<'_> {
+    /// The colour of a pixel; `plain` is that of its height alone.
+    #[inline]
+    fn at(&self, index: usize, plain: impl Fn() -> Rgb) -> Rgb {
+        let own = |colours: Option<&[Rgb]>| colours.map_or_else(&plain, |colours| colours[index]);
+        if self.share >= 1.0 { own(self.to) } else { mix(own(self.from), own(self.to), self.share) }
+    }
+}
+
 /// Room for a row's values.
 struct Room {
     form: [Vec<f32>; 3],
@@ -68,6 +84,8 @@ impl Animation {
             }
             _ => None,
         };
+        let ground = Ground { from: from.ground.as_deref(), to: to.ground.as_deref(), share };
+        let ground = Some(ground).filter(|ground| ground.from.is_some() || ground.to.is_some());
         let this = &*self;
         let room = || {
             let row = || vec![0.0; map.width];
@@ -79,7 +97,7 @@ impl Animation {
             this.light(&light, y, room);
             match &values {
                 Some(values) => this.layer_row(values, sea_m, y, room, out),
-                None => this.relief_row(sea_m, y, room, out),
+                None => this.relief_row(sea_m, ground.as_ref(), y, room, out),
             }
         });
     }
@@ -115,14 +133,18 @@ impl Animation {
     }
 
     /// A row of the relief: most pixels are looked up by height and light, those on the coast and in its glow mixed.
-    fn relief_row(&self, sea_m: f32, y: usize, room: &mut Room, out: &mut [u8]) {
+    fn relief_row(&self, sea_m: f32, ground: Option<&Ground>, y: usize, room: &mut Room, out: &mut [u8]) {
         let Room { tone, tints, .. } = room;
         let heights = self.heights.row(y);
         self.tints.places(heights, sea_m, tone, tints);
         let begin = y * self.map.width;
         for (x, pixel) in out.chunks_exact_mut(3).enumerate() {
             let line_px = self.shore.line_px[begin + x];
-            if line_px > 1.0 && !self.brush.on_line(line_px) {
+            // The scene is over a sea at zero.
+            let height_m = heights[x] - sea_m;
+            let own = ground.filter(|_| height_m > 0.0 || line_px <= 1.0);
+            let own = own.map(|ground| ground.at(begin + x, || self.scene.land(height_m.max(0.0))));
+            if line_px > 1.0 && !self.brush.on_line(line_px) && own.is_none() {
                 let colour = if self.shore.plain(begin + x) {
                     self.tints.at(tints[x])
                 } else {
@@ -131,9 +153,8 @@ impl Animation {
                 pixel.copy_from_slice(&colour);
                 continue;
             }
-            // The scene is over a sea at zero.
-            let height_m = heights[x] - sea_m;
-            let place = Place { height_m, tone: tone[x], land: coast::land_share(height_m > 0.0, line_px) };
+            let land = coast::land_share(height_m > 0.0, line_px);
+            let place = Place { height_m, tone: tone[x], land, ground: own };
             let colour = self.brush.pixel(&self.scene, place, line_px, || self.shore.glow(begin + x));
             pixel.copy_from_slice(&self.encoder.bytes(colour));
         }

@@ -1,7 +1,7 @@
 //! What a film keeps of a world.
 
 use super::{
-    super::{ReliefError, View, absent, shade},
+    super::{ReliefError, View, absent, cover::Cover, palette::Rgb, shade},
     resample::Resampler,
     soften::soften,
 };
@@ -21,6 +21,8 @@ pub struct Shot {
     pub(super) around: Vec<f32>,
     /// The values of the layer that is shown, where it is not the relief.
     pub(super) values: Option<Vec<f32>>,
+    /// The land's flat colours, where there is weather.
+    pub(super) ground: Option<Vec<Rgb>>,
     /// Height of the sea, m.
     pub(super) sea_m: f32,
     /// Exaggeration of slopes.
@@ -43,6 +45,9 @@ impl Shot {
             View::Relief => None,
         };
         let sea_m = world.sea_level_m as f32;
+        let cover = Some(view).filter(|view| **view == View::Relief);
+        let cover = cover.and_then(|_| Cover::of(world, |field| resampler.sum(&[field])));
+        let ground = cover.map(|cover| colours(&cover, &height));
         let copy = |i: usize| soften(&height, shade::sigma_px(&height, i));
         let shares = shade::SCALES.map(|(_, share)| share as f32);
         let fine = copy(0);
@@ -59,7 +64,7 @@ impl Shot {
         add(&copy(1), shares[1]);
         let around = copy(2);
         add(&around, shares[2]);
-        Ok(Self { height, form, around: around.data, values, sea_m, exaggeration, time_yr: world.time_yr })
+        Ok(Self { height, form, around: around.data, values, ground, sea_m, exaggeration, time_yr: world.time_yr })
     }
 
     /// The flat ground before the first stage, lit as this moment is.
@@ -70,6 +75,7 @@ impl Shot {
             form: flat(),
             around: flat(),
             values: self.values.clone(),
+            ground: None,
             sea_m: 0.0,
             exaggeration: self.exaggeration,
             time_yr: 0.0,
@@ -80,6 +86,16 @@ impl Shot {
     pub fn time_yr(&self) -> f64 {
         self.time_yr
     }
+}
+
+/// The land's flat colours.
+fn colours(cover: &Cover, height: &Field<f32>) -> Vec<Rgb> {
+    let mut colours = vec![[0.0; 3]; height.grid.cells()];
+    crate::grid::map_cells(&mut colours, height.grid.width, |x, y| {
+        let i = height.grid.index(x, y);
+        cover.at(i, height.data[i])
+    });
+    colours
 }
 
 /// A layer that no process has made yet is empty.

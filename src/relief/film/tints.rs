@@ -32,8 +32,8 @@ impl Tints {
         let linear = |row: usize, tone: f32| {
             let tone = tone / (TONES - 1) as f32 * 2.0 - 1.0;
             let place = match row.checked_sub(HEIGHTS) {
-                None => Place { height_m: row as f32 * metres[0], tone, land: 1.0 },
-                Some(row) => Place { height_m: row as f32 * metres[1], tone, land: 0.0 },
+                None => Place { height_m: row as f32 * metres[0], tone, land: 1.0, ground: None },
+                Some(row) => Place { height_m: row as f32 * metres[1], tone, land: 0.0, ground: None },
             };
             brush.pixel(scene, place, f32::INFINITY, || 0.0)
         };
@@ -87,7 +87,8 @@ mod tests {
             tints.places(&heights, 100.0, &tone, &mut places);
             for (&height, &place) in heights.iter().zip(&places) {
                 let height_m = height - 100.0;
-                let place_of = Place { height_m, tone: tone[0], land: if height_m > 0.0 { 1.0 } else { 0.0 } };
+                let place_of =
+                    Place { height_m, tone: tone[0], land: if height_m > 0.0 { 1.0 } else { 0.0 }, ground: None };
                 let want = encoder.bytes(brush.pixel(&scene, place_of, f32::INFINITY, || 0.0));
                 let apart = tints.at(place).iter().zip(want).map(|(a, b)| a.abs_diff(b)).max();
                 // Half a step of height where colours change fastest, and half a step of light.

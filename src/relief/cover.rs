@@ -1,0 +1,144 @@
+//! Land coloured by climate: where a world has weather, its lowlands are green where it rains and ochre where it does
+//! not, dark in the taiga, grey-brown in the tundra, and white above the snow line.
+//!
+//! Cross-blended hypsometric tints (Patterson and Kelso, Natural Earth): a ramp of heights for each climate, joined by
+//! how wet and how warm it is. Wetness is De Martonne's index (1926), rain over temperature + 10. High land is pale and
+//! brown in every climate, so that ranges read as ranges.
+
+use super::palette::{Ramp, Rgb, hex, mix};
+use crate::{
+    grid::Field,
+    world::{Layer, World},
+};
+
+/// Metres over the sea at which the ramps have their colours.
+const HEIGHTS_M: [f64; 6] = [0.0, 400.0, 1000.0, 2000.0, 3200.0, 4500.0];
+const DRY: [u32; 6] = [0xdfcda3, 0xdec695, 0xd6b686, 0xc3a078, 0xad8d70, 0xa1917f];
+const TUNDRA: [u32; 6] = [0xaeac93, 0xaba78f, 0xa5a08c, 0x9f998c, 0x9d9892, 0x9f9c99];
+const TAIGA: [u32; 6] = [0x6a8c70, 0x769474, 0x8b9d79, 0xa0a084, 0xa29a8c, 0x9e9a96];
+const TEMPERATE: [u32; 6] = [0x86aa77, 0x9ab57d, 0xb6bd86, 0xc2b388, 0xae997b, 0xa09286];
+const TROPICAL: [u32; 6] = [0x679c66, 0x79a569, 0x99b175, 0xb4ae7d, 0xa99573, 0x9d8f82];
+/// Fresh snow.
+const SNOW: u32 = 0xfafbfd;
+/// De Martonne's index of deserts' and of woods' beginnings.
+const WETNESS: [f32; 2] = [8.0, 38.0];
+/// Mean temperature between tundra and taiga, taiga and temperate, temperate and tropical land, and half the width of
+/// the transition, degC.
+const BORDERS_DEGC: [f32; 3] = [-5.0, 4.0, 20.0];
+const HALF_K: f32 = 4.0;
+/// Where snow begins and where it is whole, m over the snow line: a soft edge.
+const SNOW_M: [f32; 2] = [-250.0, 450.0];
+
+/// What a place is like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Climate {
+    /// Rain of a year, mm.
+    pub rain_mm: f32,
+    /// Mean temperature, degC.
+    pub temperature_degc: f32,
+    /// Height of the snow line, m.
+    pub snow_line_m: f32,
+}
+
+/// The climates that stand for all in a legend: humid and dry.
+pub const HUMID: Climate = Climate { rain_mm: 1100.0, temperature_degc: 10.0, snow_line_m: f32::INFINITY };
+/// See [`HUMID`].
+pub const ARID: Climate = Climate { rain_mm: 60.0, ..HUMID };
+
+/// The ramps.
+pub struct Tints {
+    dry: Ramp,
+    /// From cold to warm.
+    wet: [Ramp; 4],
+    snow: Rgb,
+}
+
+impl Tints {
+    /// Ready to colour.
+    pub fn new() -> Self {
+        let ramp = |codes: [u32; 6]| {
+            let stops: Vec<(f64, u32)> = HEIGHTS_M.into_iter().zip(codes).collect();
+            Ramp::new(&stops)
+        };
+        Self { dry: ramp(DRY), wet: [TUNDRA, TAIGA, TEMPERATE, TROPICAL].map(ramp), snow: hex(SNOW) }
+    }
+
+    /// The flat colour of land at a height, with the sea at `sea_m`.
+    pub fn at(&self, climate: Climate, height_m: f32, sea_m: f32) -> Rgb {
+        let over_m = (height_m - sea_m).max(0.0);
+        let t = climate.temperature_degc;
+        let warmer = BORDERS_DEGC.map(|border| smooth(border - HALF_K, border + HALF_K, t));
+        let mut wet = self.wet[0].at(over_m);
+        for (ramp, share) in self.wet[1..].iter().zip(warmer) {
+            if share > 0.0 {
+                wet = mix(wet, ramp.at(over_m), share);
+            }
+        }
+        // A cold desert is rather grey than ochre.
+        let dry = mix(mix(self.dry.at(over_m), self.wet[0].at(over_m), 0.7), self.dry.at(over_m), warmer[0]);
+        let index = climate.rain_mm / (t.max(-6.0) + 10.0);
+        let ground = mix(dry, wet, smooth(WETNESS[0], WETNESS[1], index));
+        mix(ground, self.snow, smooth(SNOW_M[0], SNOW_M[1], height_m - climate.snow_line_m))
+    }
+}
+
+fn smooth(from: f32, to: f32, v: f32) -> f32 {
+    let t = ((v - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// The layers by which land is coloured where a world has them all.
+pub const LAYERS: [Layer; 3] = [Layer::Rain, Layer::Temperature, Layer::SnowLine];
+
+/// The climate of a picture's pixels.
+pub struct Cover {
+    layers: [Field<f32>; 3],
+    tints: Tints,
+    sea_m: f32,
+}
+
+impl Cover {
+    /// That of a world with weather, at a picture's raster.
+    pub fn of(world: &World, bring: impl Fn(&Field<f32>) -> Field<f32>) -> Option<Self> {
+        let [rain, temperature, snow] = LAYERS.map(|layer| world.layer(layer));
+        let layers = [bring(rain?), bring(temperature?), bring(snow?)];
+        Some(Self { layers, tints: Tints::new(), sea_m: world.sea_level_m as f32 })
+    }
+
+    /// The flat colour of a pixel's land.
+    pub fn at(&self, index: usize, height_m: f32) -> Rgb {
+        let [rain_mm, temperature_degc, snow_line_m] = [0, 1, 2].map(|layer: usize| self.layers[layer].data[index]);
+        self.tints.at(Climate { rain_mm, temperature_degc, snow_line_m }, height_m, self.sea_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(rain_mm: f32, temperature_degc: f32, height_m: f32) -> Rgb {
+        Tints::new().at(Climate { rain_mm, temperature_degc, snow_line_m: 3000.0 }, height_m, 0.0)
+    }
+
+    #[test]
+    fn wet_land_is_green_dry_land_is_not_and_snow_is_white() {
+        for t in [0.0, 10.0, 25.0] {
+            let ([r, g, b], dry) = (at(1500.0, t, 100.0), at(60.0, t, 100.0));
+            assert!(g > r && g > b, "{t}");
+            assert!(dry[0] > dry[1] && dry[1] > dry[2], "{t}");
+        }
+        assert!(at(800.0, -8.0, 3600.0).into_iter().all(|c| c > 0.9));
+        assert!(at(800.0, -8.0, 2700.0).into_iter().all(|c| c < 0.6));
+    }
+
+    #[test]
+    fn no_border_shows() {
+        let apart = |a: Rgb, b: Rgb| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        for step in 0..4000 {
+            let (rain, t, h) = (step as f32 * 0.5, step as f32 * 0.015 - 30.0, step as f32);
+            assert!(apart(at(rain, 8.0, 50.0), at(rain + 0.5, 8.0, 50.0)) < 0.01);
+            assert!(apart(at(700.0, t, 50.0), at(700.0, t + 0.015, 50.0)) < 0.01);
+            assert!(apart(at(700.0, 8.0, h), at(700.0, 8.0, h + 1.0)) < 0.01);
+        }
+    }
+}
