@@ -7,6 +7,7 @@
 //! This room knows nothing of what a field means.
 
 mod blur;
+mod contour;
 mod distance;
 mod field;
 mod parallel;
@@ -14,6 +15,7 @@ mod resample;
 mod sample;
 
 pub use blur::blur;
+pub use contour::{Contour, contour_lines, contour_rings};
 pub use distance::{Nearest, nearest_feature};
 pub use field::Field;
 pub use parallel::{for_each_row, map_cells, sum_f64, sum_rows};

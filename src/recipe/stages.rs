@@ -11,6 +11,7 @@ use crate::{
     edit::{HardnessParams, ImportParams, UpliftParams, ZoomParams},
     erosion::StreamPowerParams,
     process::{Placement, Process, ProcessError},
+    rivers::RiversParams,
     tectonics::PlatesParams,
     terrain::Shape,
 };
@@ -127,7 +128,7 @@ fn table() -> Vec<StageKind> {
                 Ok(import.process(setting.placement))
             })
         },
-        row("stream_power", "Rivers", "Rivers cut into rising land over geologic time.", |rivers: StreamPowerParams, setting| {
+        row("stream_power", "Erosion by rivers", "Rivers cut into rising land over geologic time.", |rivers: StreamPowerParams, setting| {
             Ok(rivers.process(setting.placement, setting.steps))
         }),
         row("uplift", "Uplift", "Sets how fast rock is raised, where and when.", |uplift: UpliftParams, setting| {
@@ -138,6 +139,9 @@ fn table() -> Vec<StageKind> {
         }),
         row("zoom", "Zoom", "Goes on with a part of the map at a finer scale.", |zoom: ZoomParams, setting| {
             zoom.process(setting.placement)
+        }),
+        row("rivers", "Rivers", "Gathers rain to rivers and lakes, and cuts their beds.", |rivers: RiversParams, setting| {
+            Ok(rivers.process(setting.placement))
         }),
         #[cfg(test)]
         ground::<super::probe::ProbeParams>("probe", "Probe", "A level ground for tests."),

@@ -1,0 +1,223 @@
+//! The process: what it reads from the world, and what it writes and books.
+
+use super::{
+    RiversParams,
+    bed::{self, Beds},
+    course::Network,
+    hollows::{hollows, level},
+    tables,
+    waters::{Climate, Waters},
+};
+use crate::{
+    flow::{Drainage, outlets},
+    grid::Field,
+    process::{Context, Placement, Process, ProcessError, State, Step},
+    world::{Layer, Matter, World},
+};
+
+/// Seconds of a Julian year.
+const YEAR_S: f64 = 31_557_600.0;
+/// Share of the map whose mean runoff is a river, where no discharge is given.
+const RIVER_SHARE: f64 = 1.0 / 4000.0;
+
+impl RiversParams {
+    /// The process.
+    pub fn process(self, placement: Placement) -> Box<dyn Process> {
+        Box::new(Rivers { params: self, placement })
+    }
+}
+
+struct Rivers {
+    params: RiversParams,
+    placement: Placement,
+}
+
+impl Process for Rivers {
+    fn reads(&self) -> &'static [Layer] {
+        &[]
+    }
+
+    fn writes(&self) -> &'static [Layer] {
+        &[
+            Layer::Bedrock,
+            Layer::Lava,
+            Layer::Sediment,
+            Layer::Wear,
+            Layer::Deposit,
+            Layer::Discharge,
+            Layer::RiverWidth,
+            Layer::RiverDepth,
+            Layer::LakeDepth,
+            Layer::Basin,
+            Layer::StreamOrder,
+        ]
+    }
+
+    fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
+        context.check()?;
+        let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
+        let found = self.find(world, context)?;
+        context.check()?;
+        self.write(found, mask.as_ref(), world, context);
+        Ok(Step::WHOLE)
+    }
+
+    fn save(&self) -> State {
+        State::default()
+    }
+
+    fn restore(&mut self, _state: State, _context: &Context) -> Result<(), ProcessError> {
+        Ok(())
+    }
+}
+
+/// All that is to be written.
+struct Found {
+    waters: Waters,
+    beds: Beds,
+    order: Vec<u8>,
+    sea: Vec<bool>,
+}
+
+impl Rivers {
+    fn find(&self, world: &World, context: &Context) -> Result<Found, ProcessError> {
+        let (grid, sea_m, params) = (world.grid, world.sea_level_m, &self.params);
+        let height = world.height();
+        let outlet = outlets(&height, sea_m);
+        let sea: Vec<bool> = height.data.iter().map(|&h| (h as f64) < sea_m).collect();
+        let mut z: Vec<f64> = height.data.iter().map(|&h| h as f64).collect();
+
+        let surface_m = Drainage::of(grid, &z, &outlet).surface_m;
+        let mut lakes = hollows(grid, &z, &surface_m);
+        let smallest = params.smallest_lake_km2 * 1e6 / grid.cell_area_m2();
+        lakes.retain(|lake| lake.cells.len() as f64 >= smallest && lake.depth_m >= params.shallowest_lake_m);
+        context.check()?;
+        level(grid, &mut z, &outlet, &lakes);
+        context.check()?;
+
+        let climate = self.climate(world, &sea);
+        let waters = Waters::of(grid, &z, &outlet, &climate);
+        context.check()?;
+        let order = waters.order(self.least_m3_s(&climate, &sea));
+        let bankfull = |i: usize| waters.discharge_m3_s[i] * params.bankfull_ratio;
+        let cut = |i: usize| {
+            let river = order[i] > 0 && !sea[i];
+            if river { params.carve * bed::depth_m(bankfull(i)) } else { 0.0 }
+        };
+        let beds = bed::cut(&waters, &z, sea_m, cut);
+        Ok(Found { waters, beds, order, sea })
+    }
+
+    /// What each cell sheds: the layer `runoff`, or else `rain`, or else the parameter; and what other maps send in.
+    fn climate(&self, world: &World, sea: &[bool]) -> Climate {
+        let per_mm = 1e-3 * world.grid.cell_area_m2() / YEAR_S;
+        let layer = Layer::from_name("runoff").and_then(|layer| world.layer(layer)).or(world.layer(Layer::Rain));
+        let mm = |i: usize| layer.map_or(self.params.rain_mm_per_yr, |field| (field.data[i] as f64).max(0.0));
+        let mut runoff_m3_s: Vec<f64> = (0..sea.len()).map(|i| if sea[i] { 0.0 } else { mm(i) * per_mm }).collect();
+        if let Some(table) = world.table("inflows")
+            && let (Some(x), Some(y), Some(q)) =
+                (table.numbers("x_km"), table.numbers("y_km"), table.numbers("discharge_m3_s"))
+        {
+            let cell = |km: f64, size: usize| ((km * 1e3 / world.grid.cell_m).max(0.0) as usize).min(size - 1);
+            for k in 0..table.rows() {
+                let i = world.grid.index(cell(x[k], world.grid.width), cell(y[k], world.grid.height));
+                if !sea[i] {
+                    runoff_m3_s[i] += q[k].max(0.0);
+                }
+            }
+        }
+        Climate { runoff_m3_s, loss_m3_s: self.params.lake_loss_mm_per_yr * per_mm }
+    }
+
+    fn least_m3_s(&self, climate: &Climate, sea: &[bool]) -> f64 {
+        self.params.least_discharge_m3_s.unwrap_or_else(|| {
+            let land = sea.iter().filter(|&&sea| !sea).count().max(1);
+            climate.runoff_m3_s.iter().sum::<f64>() / land as f64 * sea.len() as f64 * RIVER_SHARE
+        })
+    }
+
+    fn write(&self, found: Found, mask: Option<&Field<f32>>, world: &mut World, context: &Context) {
+        let Found { waters, beds, order, sea } = found;
+        let grid = world.grid;
+        let network = Network { waters: &waters, beds: &beds, sea_m: world.sea_level_m, order: &order };
+        let rivers = network.rivers();
+        let ratio = self.params.bankfull_ratio;
+        world.set_table(tables::rivers(&rivers, ratio));
+        world.set_table(tables::lakes(&waters, grid, &beds.ground_m, &beds.surface_m));
+        world.set_table(tables::outlines(&waters, grid, &beds.ground_m, &beds.surface_m));
+
+        reshape(world, &beds.ground_m, mask, context.stage);
+        let basin = waters.basins(|i| !sea[i]);
+        let q = |i: usize| if sea[i] { 0.0 } else { waters.discharge_m3_s[i].max(0.0) };
+        let river = |i: usize| order[i] > 0 && !sea[i] && waters.lake_of[i] == 0;
+        let mut put = |layer: Layer, f: &(dyn Fn(usize) -> f64 + Sync)| {
+            world.set_layer(layer, Field::from_fn(grid, |x, y| f(grid.index(x, y)) as f32));
+        };
+        put(Layer::Discharge, &q);
+        put(Layer::RiverWidth, &|i| if river(i) { bed::width_m(q(i) * ratio) } else { 0.0 });
+        put(Layer::RiverDepth, &|i| if river(i) { bed::depth_m(q(i) * ratio) } else { 0.0 });
+        let lake = |i: usize| waters.lake_of[i] > 0;
+        put(Layer::LakeDepth, &|i| if lake(i) { (beds.surface_m[i] - beds.ground_m[i]).max(0.0) } else { 0.0 });
+        put(Layer::Basin, &|i| basin[i] as f64);
+        put(Layer::StreamOrder, &|i| if river(i) { order[i] as f64 } else { 0.0 });
+    }
+}
+
+/// Brings the ground to new heights where they differ, and books it: sediment is taken first, then lava, then bedrock;
+/// what is filled is sediment.
+fn reshape(world: &mut World, ground_m: &[f64], mask: Option<&Field<f32>>, stage: &str) {
+    let height = world.height();
+    let mut column = [Layer::Bedrock, Layer::Lava, Layer::Sediment].map(|layer| {
+        let there = world.remove_layer(layer);
+        (there.is_some() || layer != Layer::Lava).then(|| there.unwrap_or_else(|| Field::filled(world.grid, 0.0)))
+    });
+    let mut wear = world.remove_layer(Layer::Wear).unwrap_or_else(|| Field::filled(world.grid, 0.0));
+    let mut deposit = world.remove_layer(Layer::Deposit).unwrap_or_else(|| Field::filled(world.grid, 0.0));
+    let (mut came_m, mut left_m) = (0.0, 0.0);
+    for i in 0..ground_m.len() {
+        let old = height.data[i];
+        let share = mask.map_or(1.0, |mask| mask.data[i] as f64);
+        let new = (old as f64 + (ground_m[i] - old as f64) * share) as f32;
+        if new == old {
+            continue;
+        }
+        let mut gained = 0.0;
+        if new > old {
+            if let Some(sediment) = &mut column[2] {
+                gained += change(&mut sediment.data[i], new - old);
+            }
+        } else {
+            let mut wanted = old - new;
+            for (k, field) in column.iter_mut().enumerate().rev() {
+                let Some(field) = field else { continue };
+                let take = if k == 0 { wanted } else { wanted.min(field.data[i]).max(0.0) };
+                gained += change(&mut field.data[i], -take);
+                wanted -= take;
+            }
+        }
+        if gained > 0.0 {
+            came_m += gained;
+            deposit.data[i] += gained as f32;
+        } else {
+            left_m -= gained;
+            wear.data[i] -= gained as f32;
+        }
+    }
+    for (layer, field) in [Layer::Bedrock, Layer::Lava, Layer::Sediment].into_iter().zip(column) {
+        if let Some(field) = field {
+            world.set_layer(layer, field);
+        }
+    }
+    world.set_layer(Layer::Wear, wear);
+    world.set_layer(Layer::Deposit, deposit);
+    let area_m2 = world.grid.cell_area_m2();
+    world.ledger.book_in(stage, Matter::Rock, came_m * area_m2);
+    world.ledger.book_out(stage, Matter::Rock, left_m * area_m2);
+}
+
+/// Adds to a value; what was really added, m.
+fn change(value: &mut f32, by: f32) -> f64 {
+    let old = *value;
+    *value += by;
+    *value as f64 - old as f64
+}

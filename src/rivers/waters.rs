@@ -1,0 +1,162 @@
+//! Where water goes once the ground is levelled: lakes, discharge, the order of streams.
+
+use crate::{
+    flow::{Drainage, neighbours},
+    grid::Grid,
+};
+
+use super::hollows::{Hollow, hollows};
+
+/// What the waters are found from.
+pub struct Climate {
+    /// What each cell sheds, m³/s; 0 in the sea.
+    pub runoff_m3_s: Vec<f64>,
+    /// What a cell of lake loses to the air, m³/s; 0 where lakes shed as the land does.
+    pub loss_m3_s: f64,
+}
+
+/// Standing water.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lake {
+    /// Its cells.
+    pub cells: Vec<u32>,
+    /// Its deepest cell.
+    pub bottom: u32,
+    /// Height of its surface, m.
+    pub level_m: f64,
+    /// Whether it loses to the air all that it is given.
+    pub closed: bool,
+}
+
+/// Rivers and lakes cell by cell.
+pub struct Waters {
+    /// The way down from each cell.
+    pub way: Drainage,
+    /// The lakes, largest first.
+    pub lakes: Vec<Lake>,
+    /// Which lake a cell lies in, numbered from 1; 0 on dry land.
+    pub lake_of: Vec<u32>,
+    /// A year's mean, m³/s.
+    pub discharge_m3_s: Vec<f64>,
+}
+
+impl Waters {
+    /// The waters on a ground.
+    pub fn of(grid: Grid, z: &[f64], outlets: &[bool], climate: &Climate) -> Self {
+        let way = Drainage::of(grid, z, outlets);
+        let open = |way: &Drainage| -> Vec<Lake> {
+            let lake = |h: Hollow| Lake { cells: h.cells, bottom: h.bottom, level_m: h.level_m, closed: false };
+            hollows(grid, z, &way.surface_m).into_iter().map(lake).collect()
+        };
+        let mut waters = Self::gather(way, open, climate);
+        if climate.loss_m3_s > 0.0 {
+            let closed = waters.closed(grid, z, climate);
+            if !closed.is_empty() {
+                let mut ends = outlets.to_vec();
+                closed.iter().for_each(|lake| ends[lake.bottom as usize] = true);
+                let lakes = |way: &Drainage| open(way).into_iter().chain(closed).collect();
+                waters = Self::gather(Drainage::of(grid, z, &ends), lakes, climate);
+            }
+        }
+        waters
+    }
+
+    fn gather(way: Drainage, lakes: impl FnOnce(&Drainage) -> Vec<Lake>, climate: &Climate) -> Self {
+        let mut lakes = lakes(&way);
+        lakes.sort_by_key(|lake| (std::cmp::Reverse(lake.cells.len()), lake.bottom));
+        let mut lake_of = vec![0; way.len()];
+        for (lake, id) in lakes.iter().zip(1..) {
+            lake.cells.iter().for_each(|&i| lake_of[i as usize] = id);
+        }
+        let mut discharge_m3_s = climate.runoff_m3_s.clone();
+        if climate.loss_m3_s > 0.0 {
+            lakes.iter().flat_map(|lake| &lake.cells).for_each(|&i| discharge_m3_s[i as usize] = -climate.loss_m3_s);
+        }
+        for &i in way.order.iter().rev() {
+            let (i, r) = (i as usize, way.receiver[i as usize] as usize);
+            if r != i {
+                // A lake gives nothing rather than less than nothing.
+                let given = discharge_m3_s[i];
+                discharge_m3_s[r] += if lake_of[i] == lake_of[r] { given } else { given.max(0.0) };
+            }
+        }
+        Self { way, lakes, lake_of, discharge_m3_s }
+    }
+
+    /// The lakes whose outflow would be negative, with the level at which gain and loss are even.
+    fn closed(&self, grid: Grid, z: &[f64], climate: &Climate) -> Vec<Lake> {
+        let leaves = |i: usize| {
+            let r = self.way.receiver[i] as usize;
+            (self.lake_of[r] != self.lake_of[i] || r == i).then_some(self.discharge_m3_s[i])
+        };
+        let mut closed = Vec::new();
+        for lake in &self.lakes {
+            let net: f64 = lake.cells.iter().filter_map(|&i| leaves(i as usize)).sum();
+            if net >= 0.0 {
+                continue;
+            }
+            let gain = net + climate.loss_m3_s * lake.cells.len() as f64;
+            let wet = ((gain / climate.loss_m3_s) as usize).clamp(1, lake.cells.len() - 1);
+            let mut heights: Vec<f64> = lake.cells.iter().map(|&i| z[i as usize]).collect();
+            let (_, &mut level_m, _) = heights.select_nth_unstable_by(wet, f64::total_cmp);
+            let cells = pool(grid, z, lake.bottom, level_m);
+            closed.push(Lake { cells, bottom: lake.bottom, level_m, closed: true });
+        }
+        closed.retain(|lake| lake.cells.len() > 1);
+        closed
+    }
+
+    /// Strahler's order of all cells that carry `least`; 0 elsewhere.
+    pub fn order(&self, least_m3_s: f64) -> Vec<u8> {
+        let cells = self.way.len();
+        // Greatest order among the donors, and whether two of them share it.
+        let mut greatest = vec![(0u8, false); cells];
+        let mut order = vec![0; cells];
+        for &i in self.way.order.iter().rev() {
+            let i = i as usize;
+            if self.discharge_m3_s[i] < least_m3_s || self.discharge_m3_s[i] <= 0.0 {
+                continue;
+            }
+            let (most, twice) = greatest[i];
+            order[i] = most.max(1) + u8::from(twice);
+            let r = self.way.receiver[i] as usize;
+            if r != i {
+                let (most, _) = greatest[r];
+                match order[i].cmp(&most) {
+                    std::cmp::Ordering::Greater => greatest[r] = (order[i], false),
+                    std::cmp::Ordering::Equal => greatest[r].1 = true,
+                    std::cmp::Ordering::Less => {}
+                }
+            }
+        }
+        order
+    }
+
+    /// Basins by the outlet that water ends in, numbered from the largest, 1; 0 where `land` does not hold.
+    pub fn basins(&self, land: impl Fn(usize) -> bool) -> Vec<u32> {
+        let outlet = self.way.basin();
+        let mut size = vec![0u32; outlet.len()];
+        (0..outlet.len()).filter(|&i| land(i)).for_each(|i| size[outlet[i] as usize] += 1);
+        let mut ranked: Vec<u32> = (0..outlet.len() as u32).filter(|&i| size[i as usize] > 0).collect();
+        ranked.sort_by_key(|&i| (std::cmp::Reverse(size[i as usize]), i));
+        let mut number = vec![0; outlet.len()];
+        ranked.iter().zip(1..).for_each(|(&i, id)| number[i as usize] = id);
+        (0..outlet.len()).map(|i| if land(i) { number[outlet[i] as usize] } else { 0 }).collect()
+    }
+}
+
+/// The cells below a level that hang together with a bottom.
+fn pool(grid: Grid, z: &[f64], bottom: u32, level_m: f64) -> Vec<u32> {
+    let mut cells = vec![bottom];
+    let mut seen = std::collections::BTreeSet::from([bottom]);
+    let mut next = 0;
+    while let Some(&i) = cells.get(next) {
+        next += 1;
+        for (j, _) in neighbours(grid, i as usize) {
+            if z[j] < level_m && seen.insert(j as u32) {
+                cells.push(j as u32);
+            }
+        }
+    }
+    cells
+}
