@@ -162,7 +162,7 @@ pub(crate) struct RawInspect {
 pub(crate) struct RawExport {
     /// The world's folder, or the store in it
     pub world: PathBuf,
-    /// The file: .png .tif .exr .asc .r16 .raw .r32, meshes .glb .obj .stl
+    /// The file: .png .tif .exr .asc .r16 .raw .r32, meshes .glb .obj .stl, maps of lines .svg .geojson
     pub file: PathBuf,
     /// A layer, normals (a normal map) or weights (of sand, grass, rock and snow)
     #[arg(long, value_name = "NAME", default_value = "height")]
@@ -194,6 +194,9 @@ pub(crate) struct RawExport {
     /// Green of a normal map: up (OpenGL) or down (DirectX) [default: up, for unreal down]
     #[arg(long, value_name = "up|down")]
     pub normal_y: Option<String>,
+    /// Metres between contours (.svg .geojson) [default: a round number that gives about fifteen]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub contours: Option<String>,
     /// Replace files that exist
     #[arg(long)]
     pub force: bool,

@@ -27,6 +27,7 @@ pub(crate) fn validate(raw: RawExport) -> Result<ExportRequest, CliError> {
         bits: raw.bits.as_deref().map(bits).transpose()?,
         south_first: raw.flip.as_deref().map(flip).transpose()?.unwrap_or(false),
         green: raw.normal_y.as_deref().map(green).transpose()?,
+        contours_m: raw.contours.as_deref().map(contours).transpose()?,
         world: raw.world,
         file: raw.file,
         layer: raw.layer,
@@ -96,6 +97,13 @@ fn bits(text: &str) -> Result<u32, CliError> {
     match text.parse() {
         Ok(n @ (8 | 16 | 32)) => Ok(n),
         _ => wrong(format!("--bits {text}: must be 8, 16 or 32")),
+    }
+}
+
+fn contours(text: &str) -> Result<f64, CliError> {
+    match text.parse::<f64>() {
+        Ok(m) if m.is_finite() && m > 0.0 => Ok(m),
+        _ => wrong(format!("--contours {text}: must be a number of metres above 0, such as 100")),
     }
 }
 

@@ -8,6 +8,7 @@
 //! | `.asc` | a layer as text (ESRI ASCII grid) | [`raster`] |
 //! | `.r16 .raw .r32` | a layer as bare numbers | [`raster`] |
 //! | `.glb` `.obj` `.stl` | the ground as a mesh | [`write_mesh`] |
+//! | `.geojson` `.svg` | coast, contours, rivers, lakes, plates as lines and polygons | [`write_vector`] |
 //! | films | pictures in time order | [`video`] |
 //!
 //! A file is written beside its place and moved there when it is whole. This room reads worlds and never changes them.
@@ -18,6 +19,7 @@ mod mesh;
 mod normals;
 pub mod raster;
 mod staged;
+mod vector;
 pub mod video;
 mod weights;
 
@@ -25,6 +27,7 @@ pub use height_png::{HeightRange, write_height_png, write_height_png_within};
 pub use mesh::{MESH_FORMATS, MESH_SIDES, MeshFormat, MeshOptions, write_glb, write_mesh, write_obj, write_stl};
 pub use normals::{Green, encoded as encoded_normal, normals};
 pub use staged::Staged;
+pub use vector::{VECTOR_FORMATS, VectorFormat, VectorOptions, write_vector};
 pub use weights::{MATERIALS, WeightRules};
 
 use std::{

@@ -75,7 +75,10 @@ impl Lattice<'_> {
         let ((i, j), (k, l)) = if self.value(i, j) <= self.value(k, l) { ((i, j), (k, l)) } else { ((k, l), (i, j)) };
         let (low, high) = (self.value(i, j) as f64, self.value(k, l) as f64);
         let (a, b) = (self.place(i, j), self.place(k, l));
-        let t = if low.is_finite() && high > low { ((level as f64 - low) / (high - low)).clamp(0.0, 1.0) } else { 1.0 };
+        // Never on a node itself, where rings could touch.
+        const HAIR: f64 = 1e-3;
+        let inner = low.is_finite() && high > low;
+        let t = if inner { ((level as f64 - low) / (high - low)).clamp(HAIR, 1.0 - HAIR) } else { 1.0 };
         [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]
     }
 }

@@ -5,7 +5,10 @@ use tiny_skia::{
     Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PremultipliedColorU8, Stroke, Transform,
 };
 
-use super::palette::{Encoder, Rgb};
+use super::{
+    palette::{Encoder, Rgb},
+    rivers::Waters,
+};
 use crate::grid::{Grid, for_each_row};
 
 /// More pixels than any picture has.
@@ -106,6 +109,12 @@ impl Canvas {
             let source = &other.pixmap.pixels()[row * from..][..wide];
             self.pixmap.pixels_mut()[(y + row) * to + x..][..wide].copy_from_slice(source);
         }
+    }
+
+    /// Lays rivers and lakes over the sheet.
+    pub fn lay(&mut self, waters: &Waters) {
+        let width = self.width();
+        for_each_row(self.pixmap.data_mut(), width * 4, |y, row| waters.lay::<4>(y, 1.0, row));
     }
 
     /// Lays a colour over one pixel by a coverage; nothing beyond the rim.

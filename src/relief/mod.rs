@@ -2,9 +2,10 @@
 //! legend, scale bar, plate borders and motions.
 //!
 //! A picture is made in passes over its pixels, rows in parallel: heights are brought to the picture's raster
-//! (`frame`), lit (`shade`), coloured by height (`tint`, `palette`) and climate (`cover`), the coast is drawn (`coast`), plates are laid over
-//! it (`overlay`), and what stands around the map is added (`furniture`, `text`). Same world, same bits, for any
-//! number of threads. A film draws the same map at its own size and one scale of colours, quicker ([`film`]).
+//! (`frame`), lit (`shade`), coloured by height (`tint`, `palette`) and climate (`cover`), the coast is drawn (`coast`),
+//! rivers and lakes (`rivers`) and plates (`overlay`) are laid over it, and what stands around the map is added
+//! (`furniture`, `text`). Same world, same bits, for any number of threads. A film draws the same map at its own size and
+//! one scale of colours, quicker ([`film`]).
 //!
 //! This room reads worlds and never changes them; it knows no process and no GPU.
 
@@ -17,6 +18,7 @@ mod layers;
 mod marks;
 mod overlay;
 mod palette;
+mod rivers;
 mod shade;
 mod sheet;
 mod swatches;
@@ -123,6 +125,11 @@ pub fn map(world: &World, view: &View, options: &Options) -> Result<RgbImage, Re
         }
     };
     let mut canvas = marks::Canvas::from_linear(frame.grid, &pixels);
+    if *view == View::Relief
+        && let Some(waters) = rivers::Waters::of(world, &frame.grid)
+    {
+        canvas.lay(&waters);
+    }
     let mut symbols = Vec::new();
     if options.overlay {
         symbols = overlay::draw(&mut canvas, &frame, world);
@@ -137,6 +144,11 @@ pub fn map(world: &World, view: &View, options: &Options) -> Result<RgbImage, Re
 pub fn tints(world: &World) -> impl Fn(f32) -> [f32; 3] {
     let scene = tint::Scene::new(&world.height(), world.sea_level_m);
     move |height_m| scene.at(height_m)
+}
+
+/// A colour of linear light as sRGB bytes.
+pub fn srgb(linear: [f32; 3]) -> [u8; 3] {
+    palette::Encoder::new().bytes(linear)
 }
 
 /// The vertical exaggeration that a map of this world would choose; a film puts that of one frame into all.

@@ -5,6 +5,7 @@ use super::{
     bed::{self, Beds},
     course::Network,
     hollows::{hollows, level},
+    inflow::{inflows, open_gates},
     tables,
     waters::{Climate, Waters},
 };
@@ -83,8 +84,8 @@ impl Rivers {
     fn find(&self, world: &World, context: &Context) -> Result<Found, ProcessError> {
         let (grid, sea_m, params) = (world.grid, world.sea_level_m, &self.params);
         let height = world.height();
-        let outlet = outlets(&height, sea_m);
         let sea: Vec<bool> = height.data.iter().map(|&h| (h as f64) < sea_m).collect();
+        let outlet = open_gates(grid, outlets(&height, sea_m), &inflows(world), &sea);
         let mut z: Vec<f64> = height.data.iter().map(|&h| h as f64).collect();
 
         let surface_m = Drainage::of(grid, &z, &outlet).surface_m;
@@ -114,16 +115,9 @@ impl Rivers {
         let layer = Layer::from_name("runoff").and_then(|layer| world.layer(layer)).or(world.layer(Layer::Rain));
         let mm = |i: usize| layer.map_or(self.params.rain_mm_per_yr, |field| (field.data[i] as f64).max(0.0));
         let mut runoff_m3_s: Vec<f64> = (0..sea.len()).map(|i| if sea[i] { 0.0 } else { mm(i) * per_mm }).collect();
-        if let Some(table) = world.table("inflows")
-            && let (Some(x), Some(y), Some(q)) =
-                (table.numbers("x_km"), table.numbers("y_km"), table.numbers("discharge_m3_s"))
-        {
-            let cell = |km: f64, size: usize| ((km * 1e3 / world.grid.cell_m).max(0.0) as usize).min(size - 1);
-            for k in 0..table.rows() {
-                let i = world.grid.index(cell(x[k], world.grid.width), cell(y[k], world.grid.height));
-                if !sea[i] {
-                    runoff_m3_s[i] += q[k].max(0.0);
-                }
+        for inflow in inflows(world) {
+            if !sea[inflow.cell] {
+                runoff_m3_s[inflow.cell] += inflow.discharge_m3_s;
             }
         }
         Climate { runoff_m3_s, loss_m3_s: self.params.lake_loss_mm_per_yr * per_mm }

@@ -49,6 +49,7 @@ fn check(request: &ExportRequest) -> Result<(), JobError> {
         ("--big-endian", request.big_endian),
         ("--flip", request.south_first),
         ("--normal-y", request.green.is_some()),
+        ("--contours", request.contours_m.is_some()),
     ];
     if let Some((flag, _)) = others.iter().find(|(_, given)| *given) {
         return refuse(format!("{}: {flag} does not go with meshes", request.file.display()));

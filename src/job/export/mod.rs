@@ -2,7 +2,7 @@
 //!
 //! The order of things: [`order`] checks what was asked without opening the world, [`place`] finds where the samples lie,
 //! [`names`] says which files there will be, [`draw`] makes the rasters, and [`sidecar`] says in JSON what the files
-//! cannot say themselves. Meshes go another way, [`mesh`].
+//! cannot say themselves. Meshes and vector maps go other ways, [`mesh`] and [`vector`].
 
 mod draw;
 mod mesh;
@@ -10,6 +10,7 @@ mod names;
 mod order;
 mod place;
 mod sidecar;
+mod vector;
 
 use std::path::PathBuf;
 
@@ -51,6 +52,8 @@ pub struct ExportRequest {
     pub south_first: bool,
     /// Where green points in a normal map; as the engine likes it if absent.
     pub green: Option<Green>,
+    /// Metres between the contours of a vector map; a round number that suits the land if absent.
+    pub contours_m: Option<f64>,
     /// Replace files that are there.
     pub force: bool,
 }
@@ -68,6 +71,9 @@ pub struct Exported {
 pub fn export(request: &ExportRequest) -> Result<Exported, JobError> {
     if let Some(format) = mesh::format(&request.file) {
         return mesh::export(request, format);
+    }
+    if let Some(format) = vector::format(&request.file) {
+        return vector::export(request, format);
     }
     let order = Order::check(request)?;
     let (world, provenance) = open_world(&request.world)?;

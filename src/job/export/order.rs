@@ -2,7 +2,7 @@
 
 use crate::{
     export::{
-        MESH_FORMATS,
+        MESH_FORMATS, VECTOR_FORMATS,
         engine::{Engine, WeightFiles, reads_as_tiles},
         raster::{Depth, FORMATS, Format, Layout},
     },
@@ -46,10 +46,12 @@ impl<'a> Order<'a> {
         let file = request.file.display();
         let Some(format) = Format::of(&request.file) else {
             let meshes = MESH_FORMATS.iter().map(|(ending, _)| ending);
+            let vectors = VECTOR_FORMATS.iter().map(|(ending, _)| ending);
             let endings: Vec<String> = FORMATS
                 .iter()
                 .flat_map(|format| format.endings)
                 .chain(meshes)
+                .chain(vectors)
                 .map(|ending| format!(".{ending}"))
                 .collect();
             return refuse(format!("{file}: no format has this ending; there are {}", endings.join(" ")));
@@ -62,6 +64,9 @@ impl<'a> Order<'a> {
             return refuse(format!(
                 "{flag} is for .r16 .raw .r32, which leave it open; {file} has an order of its own"
             ));
+        }
+        if request.contours_m.is_some() {
+            return refuse(format!("{file}: --contours goes with .geojson and .svg"));
         }
         if request.green.is_some() && content != Content::Normals {
             return refuse("--normal-y goes with --layer normals");

@@ -86,6 +86,12 @@ impl Animation {
         };
         let ground = Ground { from: from.ground.as_deref(), to: to.ground.as_deref(), share };
         let ground = Some(ground).filter(|ground| ground.from.is_some() || ground.to.is_some());
+        // Rivers that come or go fade; those of both are the nearer's.
+        let waters = match (&from.waters, &to.waters) {
+            (Some(_), Some(_)) => nearest.waters.as_ref().map(|waters| (waters, 1.0)),
+            (Some(waters), None) => Some((waters, 1.0 - share)),
+            (None, waters) => waters.as_ref().map(|waters| (waters, share)),
+        };
         let this = &*self;
         let room = || {
             let row = || vec![0.0; map.width];
@@ -98,6 +104,9 @@ impl Animation {
             match &values {
                 Some(values) => this.layer_row(values, sea_m, y, room, out),
                 None => this.relief_row(sea_m, ground.as_ref(), y, room, out),
+            }
+            if let Some((waters, share)) = waters {
+                waters.lay::<3>(y, share, out);
             }
         });
     }

@@ -1,7 +1,7 @@
 //! What a film keeps of a world.
 
 use super::{
-    super::{ReliefError, View, absent, cover::Cover, palette::Rgb, shade},
+    super::{ReliefError, View, absent, cover::Cover, palette::Rgb, rivers::Waters, shade},
     resample::Resampler,
     soften::soften,
 };
@@ -23,6 +23,8 @@ pub struct Shot {
     pub(super) values: Option<Vec<f32>>,
     /// The land's flat colours, where there is weather.
     pub(super) ground: Option<Vec<Rgb>>,
+    /// Rivers and lakes, where the relief is shown and there are any.
+    pub(super) waters: Option<Waters>,
     /// Height of the sea, m.
     pub(super) sea_m: f32,
     /// Exaggeration of slopes.
@@ -44,6 +46,7 @@ impl Shot {
             View::Layer(_) => Some(height.data.clone()),
             View::Relief => None,
         };
+        let waters = if *view == View::Relief { Waters::of(world, &map) } else { None };
         let sea_m = world.sea_level_m as f32;
         let cover = Some(view).filter(|view| **view == View::Relief);
         let cover = cover.and_then(|_| Cover::of(world, |field| resampler.sum(&[field])));
@@ -64,7 +67,17 @@ impl Shot {
         add(&copy(1), shares[1]);
         let around = copy(2);
         add(&around, shares[2]);
-        Ok(Self { height, form, around: around.data, values, ground, sea_m, exaggeration, time_yr: world.time_yr })
+        Ok(Self {
+            height,
+            form,
+            around: around.data,
+            values,
+            ground,
+            waters,
+            sea_m,
+            exaggeration,
+            time_yr: world.time_yr,
+        })
     }
 
     /// The flat ground before the first stage, lit as this moment is.
@@ -76,6 +89,7 @@ impl Shot {
             around: flat(),
             values: self.values.clone(),
             ground: None,
+            waters: None,
             sea_m: 0.0,
             exaggeration: self.exaggeration,
             time_yr: 0.0,
