@@ -121,6 +121,19 @@ struct Stage {
     solver: Option<Solver>,
 }
 
+impl Stage {
+    /// The solver; made when it is first asked for, since the mask is evaluated before the stage changes what it looks at.
+    fn solver(&mut self, world: &World) -> Result<&mut Solver, ProcessError> {
+        match &mut self.solver {
+            Some(solver) => Ok(solver),
+            empty => {
+                let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
+                Ok(empty.insert(Solver::new(&self.params, world, mask)))
+            }
+        }
+    }
+}
+
 impl Process for Stage {
     fn reads(&self) -> &'static [Layer] {
         &[Layer::Bedrock]
@@ -132,19 +145,21 @@ impl Process for Stage {
 
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
         context.check()?;
-        let solver = match &mut self.solver {
-            Some(solver) => solver,
-            empty => {
-                // Evaluated once, before the stage changes what the mask looks at.
-                let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
-                empty.insert(Solver::new(&self.params, world, mask))
-            }
-        };
         let span_yr = |steps: u64| 1e6 * self.params.duration_myr * (steps as f64 / self.steps as f64);
         let elapsed_yr = span_yr(self.done + 1) - span_yr(self.done);
+        let solver = self.solver(world)?;
         solver.advance(world, elapsed_yr, context.stage);
         self.done += 1;
         Ok(Step { done: self.done as f64 / self.steps as f64, elapsed_yr })
+    }
+
+    fn follow(&mut self, world: &mut World, context: &Context, span_yr: f64) -> Result<(), ProcessError> {
+        let steps = (span_yr * 1e-3 / self.params.step_kyr - 1e-9).ceil().max(1.0);
+        let solver = self.solver(world)?;
+        for _ in 0..steps as u64 {
+            solver.advance(world, span_yr / steps, context.stage);
+        }
+        Ok(())
     }
 
     fn save(&self) -> State {
