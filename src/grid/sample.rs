@@ -34,14 +34,41 @@ pub fn linear(field: &Field<f32>, at_m: [f64; 2]) -> f64 {
 
 /// Catmull-Rom value at a point in metres: smooth slopes, exact at cell centres, may overshoot by a little.
 pub fn cubic(field: &Field<f32>, at_m: [f64; 2]) -> f64 {
-    let (xs, fx, ys, fy) = cells(&field.grid, at_m);
-    let (wx, wy) = (weights(fx), weights(fy));
-    let mut sum = 0.0;
-    for (&y, wy) in ys.iter().zip(wy) {
-        let row: f64 = xs.iter().zip(wx).map(|(&x, w)| w * field.at(x, y) as f64).sum();
-        sum += wy * row;
+    Stencil::at(&field.grid, at_m).read(field)
+}
+
+/// The sixteen cells around a point and their Catmull-Rom weights: reads several fields of one grid at one place.
+#[derive(Clone, Copy, Debug)]
+pub struct Stencil {
+    columns: [usize; 4],
+    rows: [usize; 4],
+    across: [f64; 4],
+    down: [f64; 4],
+}
+
+impl Stencil {
+    /// The stencil around a point in metres.
+    pub fn at(grid: &Grid, at_m: [f64; 2]) -> Self {
+        let (columns, fx, rows, fy) = cells(grid, at_m);
+        Self { columns, rows, across: weights(fx), down: weights(fy) }
     }
-    sum
+
+    /// The value of a field there.
+    #[inline]
+    pub fn read(&self, field: &Field<f32>) -> f64 {
+        let ([first, .., last], mut sum) = (self.columns, 0.0);
+        for (&y, down) in self.rows.iter().zip(self.down) {
+            let row = field.row(y);
+            // Away from the rim the four stand side by side.
+            let four = match row.get(first..first + 4) {
+                Some(&[a, b, c, d]) if first + 3 == last => [a, b, c, d],
+                _ => self.columns.map(|x| row[x]),
+            };
+            let across: f64 = four.iter().zip(self.across).map(|(&v, w)| w * v as f64).sum();
+            sum += down * across;
+        }
+        sum
+    }
 }
 
 fn weights(t: f64) -> [f64; 4] {

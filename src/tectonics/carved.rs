@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::{
     crust,
-    grid::{Field, Grid, cubic, linear},
+    grid::{Field, Grid, Stencil, cubic, linear},
     world::{Layer, World},
 };
 
@@ -46,15 +46,25 @@ pub struct Carved {
     worn: Vec<Field<f32>>,
 }
 
-/// Where a cell's ground lay before the step.
+/// A cell's ground after the plates have moved below it.
 #[derive(Clone, Copy, Default)]
-struct Origin {
-    /// On the map, m.
-    at_m: [f64; 2],
-    /// What is added to its height, m.
+struct Ground {
+    /// Height before it is raised, m.
+    height_m: f32,
+    /// What the plates raise it by in the step, m.
     lift_m: f32,
-    /// New sea floor: its height. It comes from nowhere.
-    bare_m: Option<f32>,
+    /// What it brought with it, in the order of [`CARRIED`].
+    carried: [f32; CARRIED.len()],
+}
+
+/// Where the plates were before a step, and where they are.
+struct Motion<'a> {
+    before: &'a Surface,
+    now: &'a Surface,
+    poses_before: &'a [Pose],
+    poses: &'a [Pose],
+    rebound: &'a Field<f32>,
+    span_myr: f64,
 }
 
 impl Carved {
@@ -69,7 +79,8 @@ impl Carved {
         let unread = unread(&reads_m, &run.domain, warp);
         let expected = Field::filled(map, 0.0);
         let mut carved = Self { reads_m, unread, poses: poses(run), expected, surface, worn: Vec::new() };
-        carved.expected = Field::from_fn(map, |x, y| carved.new_ground(map, x, y, plains));
+        carved.expected =
+            Field::from_fn(map, |x, y| bare(&carved.surface, carved.reads_at(x, y), map.center_m(x, y), plains));
         carved
     }
 
@@ -108,54 +119,65 @@ impl Carved {
     /// Lets the ground drift with its plates after they have moved: writes the column, what goes with it, and the rate at
     /// which it is being raised over `span_yr`.
     pub fn carry(&mut self, run: &Simulation, params: &PlatesParams, plains: &Plains, span_yr: f64, world: &mut World) {
-        let now = Surface::of(run, params);
-        let poses = poses(run);
+        let (now, poses) = (Surface::of(run, params), poses(run));
         let rebound = self.rebound(world.sea_level_m);
-        let born_myr = span_yr * 1e-6;
-        let origins = Field::from_fn(world.grid, |x, y| {
-            let at = self.reads_at(x, y);
-            let q = now.at(at);
-            let plate = now.plate_at(q) as usize;
-            if now.is_newer(q, born_myr) {
-                return Origin {
-                    bare_m: Some(
-                        (cubic(&now.height, q) + plains.height(world.grid.center_m(x, y), cubic(&now.height, q), 0.0))
-                            as f32,
-                    ),
-                    ..Origin::default()
-                };
+        let motion = Motion {
+            before: &self.surface,
+            now: &now,
+            poses_before: &self.poses,
+            poses: &poses,
+            rebound: &rebound,
+            span_myr: span_yr * 1e-6,
+        };
+        let height = world.height();
+        let carried = CARRIED.map(|layer| world.layer(layer));
+        let ground = Field::from_fn(world.grid, |x, y| match self.origin(x, y, &motion) {
+            Some((from_m, lift_m)) => {
+                let around = Stencil::at(&height.grid, from_m);
+                // Cubic reading overshoots by a little; none of these can be less than nothing.
+                let part = |field: &Field<f32>| (around.read(field) as f32).max(0.0);
+                let carried = carried.map(|field| field.map_or(0.0, part));
+                Ground { height_m: around.read(&height) as f32, lift_m: lift_m as f32, carried }
             }
-            let before = self.poses[plate].to_map(poses[plate].to_body(at));
-            let q_before = self.surface.at(before);
-            let lift = cubic(&now.height, q) - cubic(&self.surface.height, q_before) + linear(&rebound, q_before);
-            Origin { at_m: self.shown_at(x, y, before - at), lift_m: lift as f32, bare_m: None }
+            None => Ground {
+                height_m: bare(&now, self.reads_at(x, y), world.grid.center_m(x, y), plains),
+                ..Ground::default()
+            },
         });
         (self.surface, self.poses) = (now, poses);
-        self.write(&origins, span_yr, world);
+        self.write(&ground, span_yr, world);
     }
 
-    fn write(&mut self, origins: &Field<Origin>, span_yr: f64, world: &mut World) {
-        let grid = world.grid;
-        let height = world.height();
-        let read = |field: &Field<f32>, x, y, bare: f32| {
-            let origin: Origin = origins.at(x, y);
-            origin.bare_m.map_or_else(|| cubic(field, origin.at_m) as f32, |_| bare)
-        };
-        let mut bedrock = Field::from_fn(grid, |x, y| read(&height, x, y, origins.at(x, y).bare_m.unwrap_or(0.0)));
-        let lift = |i: usize| if origins.data[i].bare_m.is_some() { 0.0 } else { origins.data[i].lift_m };
-        crate::grid::map_cells(&mut self.expected.data, grid.width, |x, y| bedrock.at(x, y) + lift(grid.index(x, y)));
-        let to_mm_per_yr = (1e3 / span_yr) as f32;
-        world.set_layer(Layer::Uplift, Field::from_fn(grid, |x, y| lift(grid.index(x, y)) * to_mm_per_yr));
-        for layer in CARRIED {
-            let Some(field) = world.layer(layer) else { continue };
-            // Cubic reading overshoots by a little; none of these can be less than nothing.
-            let moved = Field::from_fn(grid, |x, y| read(field, x, y, 0.0).max(0.0));
-            if Layer::COLUMN.contains(&layer) {
-                bedrock.data.iter_mut().zip(&moved.data).for_each(|(rock, thickness)| *rock -= thickness);
-            }
-            world.set_layer(layer, moved);
+    /// Where a cell's ground lay before, on the map, m, and what the plates raise it by, m; new sea floor comes from nowhere.
+    fn origin(&self, x: usize, y: usize, motion: &Motion) -> Option<([f64; 2], f64)> {
+        let at = self.reads_at(x, y);
+        let q = motion.now.at(at);
+        if motion.now.is_newer(q, motion.span_myr) {
+            return None;
         }
-        world.set_layer(Layer::Bedrock, bedrock);
+        let plate = motion.now.plate_at(q) as usize;
+        let before = motion.poses_before[plate].to_map(motion.poses[plate].to_body(at));
+        let q_before = motion.before.at(before);
+        let raised = cubic(&motion.now.height, q) - cubic(&motion.before.height, q_before);
+        Some((self.shown_at(x, y, before - at), raised + linear(motion.rebound, q_before)))
+    }
+
+    fn write(&mut self, ground: &Field<Ground>, span_yr: f64, world: &mut World) {
+        let to_mm_per_yr = (1e3 / span_yr) as f32;
+        self.expected = ground.map(|g| g.height_m + g.lift_m);
+        world.set_layer(Layer::Uplift, ground.map(|g| g.lift_m * to_mm_per_yr));
+        let mut below = [false; CARRIED.len()];
+        for (k, layer) in CARRIED.into_iter().enumerate() {
+            if world.layer(layer).is_none() {
+                continue;
+            }
+            below[k] = Layer::COLUMN.contains(&layer);
+            world.set_layer(layer, ground.map(|g| g.carried[k]));
+        }
+        // What lies on it makes up the rest of the height.
+        let cover =
+            |g: &Ground| g.carried.iter().zip(below).map(|(v, counts)| if counts { *v } else { 0.0 }).sum::<f32>();
+        world.set_layer(Layer::Bedrock, ground.map(|g| g.height_m - cover(&g)));
     }
 
     fn reads_at(&self, x: usize, y: usize) -> DVec2 {
@@ -210,12 +232,13 @@ impl Carved {
         }
         means
     }
+}
 
-    fn new_ground(&self, map: Grid, x: usize, y: usize, plains: &Plains) -> f32 {
-        let q = self.surface.at(self.reads_at(x, y));
-        let base = cubic(&self.surface.height, q);
-        (base + plains.height(map.center_m(x, y), base, linear(&self.surface.kind, q))) as f32
-    }
+/// Height of ground that nobody has carved, m.
+fn bare(surface: &Surface, reads_m: DVec2, at_m: [f64; 2], plains: &Plains) -> f32 {
+    let q = surface.at(reads_m);
+    let base = cubic(&surface.height, q);
+    (base + plains.height(at_m, base, linear(&surface.kind, q))) as f32
 }
 
 /// The tectonic cells on the map that no cell of it reads, and where it shows them.
