@@ -12,37 +12,29 @@ const EXPLICIT: f64 = 0.2;
 /// Explicit steps beyond which lines are cheaper.
 const MOST_STEPS: f64 = 6.0;
 
-/// How much a face lets through, of what its two cells allow.
-pub(super) type Face = fn(f32, f32) -> f32;
-
-/// A face that is open where one of its cells is.
-pub(super) fn either(a: f32, b: f32) -> f32 {
+/// How much a face lets through: it is open where one of its cells is.
+fn face(a: f32, b: f32) -> f32 {
     a.max(b)
 }
 
-/// A face that is open where both of its cells are.
-pub(super) fn both(a: f32, b: f32) -> f32 {
-    a.min(b)
-}
-
 /// Diffuses `value` by `spread_m2` (diffusivity times time); `open` scales it cell by cell.
-pub(super) fn diffuse(grid: Grid, value: &mut Vec<f64>, spread_m2: f64, open: &[f32], face: Face) {
+pub(super) fn diffuse(grid: Grid, value: &mut Vec<f64>, spread_m2: f64, open: &[f32]) {
     let share = spread_m2 / grid.cell_area_m2();
     if share <= 0.0 {
         return;
     }
     let steps = (share / EXPLICIT).ceil();
     if steps > MOST_STEPS {
-        return implicit(grid, value, share, open, face);
+        return implicit(grid, value, share, open);
     }
     let mut next = vec![0.0; value.len()];
     for _ in 0..steps as usize {
-        explicit(grid, value, &mut next, share / steps, open, face);
+        explicit(grid, value, &mut next, share / steps, open);
         std::mem::swap(value, &mut next);
     }
 }
 
-fn explicit(grid: Grid, value: &[f64], next: &mut [f64], share: f64, open: &[f32], face: Face) {
+fn explicit(grid: Grid, value: &[f64], next: &mut [f64], share: f64, open: &[f32]) {
     let width = grid.width;
     for_each_row(next, width, |y, out| {
         let (north, south) = (grid.row(y, -1) * width, grid.row(y, 1) * width);
@@ -62,18 +54,18 @@ fn explicit(grid: Grid, value: &[f64], next: &mut [f64], share: f64, open: &[f32
     });
 }
 
-fn implicit(grid: Grid, value: &mut Vec<f64>, share: f64, open: &[f32], face: Face) {
+fn implicit(grid: Grid, value: &mut Vec<f64>, share: f64, open: &[f32]) {
     let flat = Grid { edges: Edges::Open, ..grid };
     let turned = Grid { width: flat.height, height: flat.width, ..flat };
-    solve_rows(flat, value, share, open, face);
+    solve_rows(flat, value, share, open);
     let mut columns = transposed(flat, value);
     let open = transposed(flat, open);
-    solve_rows(turned, &mut columns, share, &open, face);
+    solve_rows(turned, &mut columns, share, &open);
     *value = transposed(turned, &columns);
 }
 
 /// Thomas's algorithm on every row.
-fn solve_rows(grid: Grid, value: &mut [f64], share: f64, open: &[f32], face: Face) {
+fn solve_rows(grid: Grid, value: &mut [f64], share: f64, open: &[f32]) {
     let width = grid.width;
     for_each_row(value, width, |y, row| {
         let open = &open[y * width..][..width];

@@ -68,6 +68,11 @@ impl Router {
         self.put_in_order();
     }
 
+    /// Moves over the raster.
+    pub fn compass(&self) -> &Compass {
+        &self.compass
+    }
+
     /// The raster.
     pub fn grid(&self) -> Grid {
         self.compass.grid

@@ -17,10 +17,10 @@ use crate::{
 use super::{
     Rim,
     base::{Base, BaseLevel},
-    coast,
+    coast::{self, Coast},
     law::settle,
 };
-use crate::erosion::diffusion::{diffuse, either};
+use crate::erosion::diffusion::diffuse;
 
 /// Rain for which discharge equals catchment area, so that erodibility means the same for both; mm/yr.
 const REFERENCE_RAIN_MM_PER_YR: f64 = 1000.0;
@@ -44,8 +44,8 @@ pub struct Law {
     pub steepest: f64,
     /// `D` on land, m²/yr.
     pub diffusivity_m2_per_yr: f64,
-    /// `K_m` in the sea, m²/yr.
-    pub marine_diffusivity_m2_per_yr: f64,
+    /// Distance from the mouth over which a river's load falls to 1/e in the sea, m.
+    pub marine_reach_m: f64,
     /// What the rim of an open map is.
     pub rim: Rim,
     /// Whether uplift moves base levels too.
@@ -90,6 +90,7 @@ pub struct Carver {
     surface_m: Vec<f64>,
     /// Sediment on its way; where it ends, what was laid down.
     load_m: Vec<f64>,
+    coast: Coast,
 }
 
 impl Carver {
@@ -104,6 +105,7 @@ impl Carver {
             raised_m: zeros(),
             surface_m: zeros(),
             load_m: zeros(),
+            coast: Coast::default(),
         }
     }
 
@@ -124,7 +126,7 @@ impl Carver {
         let lifted_m = self.lift(law, forcing, height_m, years);
         self.weigh(law, forcing, years);
         self.erode(law, forcing, height_m, years);
-        let left_m = self.carry(law, forcing, height_m, years);
+        let left_m = self.carry(law, forcing, height_m);
         let left_m = left_m + self.creep(law, forcing, height_m, years);
         Moved { lifted_m, left_m }
     }
@@ -138,11 +140,6 @@ impl Carver {
         self.base.find(self.grid(), height_m, forcing.sea_level_m, law.rim);
         let sea_m = forcing.sea_level_m;
         self.surface_m.par_iter_mut().zip(height_m).for_each(|(s, &z)| *s = z.max(sea_m));
-        for &(i, base) in &self.base.edge {
-            if base == Base::Fixed {
-                self.surface_m[i] = height_m[i];
-            }
-        }
         self.router.route(&self.surface_m, &self.base.outlet);
     }
 
@@ -256,9 +253,10 @@ impl Carver {
                     let rate = ease * law.erodibility * years * power(water, law.area_exponent);
                     let cut = rate * libm::pow(slope.min(above.max(0.0) / length), law.slope_exponent);
                     let most = above.max(0.0) * (rate / length) / (1.0 + rate / length);
-                    self.raised_m[i] - cut.min(most)
+                    // Nor does the slope say anything of what lies further up than that.
+                    self.raised_m[i] - cut.min(most).min(slope * length)
                 }
-                _ => self.raised_m[i],
+                Base::Fixed => self.raised_m[i].max(sea_m),
             };
         }
     }
@@ -319,7 +317,7 @@ impl Carver {
     }
 
     /// Lays the load down in lakes and in the sea; gives what left the map.
-    fn carry(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64], years: f64) -> f64 {
+    fn carry(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64]) -> f64 {
         self.gather_load(height_m);
         let (way, surface, load) = (self.router.ways(), &self.surface_m, &self.load_m);
         let in_lake = |i: usize| way[i] != ROOT && surface[i] > height_m[i];
@@ -333,25 +331,25 @@ impl Carver {
             left_m += std::mem::take(&mut self.load_m[i]);
         }
         if self.base.sea {
-            left_m += self.lay_in_sea(law, forcing, height_m, years);
+            left_m += self.lay_in_sea(law, forcing, height_m);
         }
         left_m
     }
 
-    fn lay_in_sea(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64], years: f64) -> f64 {
-        let way = self.router.ways();
-        let load: Vec<f64> =
-            self.load_m.par_iter().zip(way).map(|(&load, &way)| if way == ROOT { load } else { 0.0 }).collect();
-        let mut room: Vec<f64> = height_m
-            .par_iter()
-            .zip(way)
-            .map(|(&z, &way)| if way == ROOT { (forcing.sea_level_m - z).max(0.0) } else { 0.0 })
-            .collect();
+    fn lay_in_sea(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64]) -> f64 {
+        let (way, sea_m) = (self.router.ways(), forcing.sea_level_m);
+        // What was raised above the sea in this step has no room either.
+        let cells = self.load_m.par_iter_mut().zip(&mut self.surface_m).zip(&*height_m).zip(way);
+        cells.for_each(|(((load, room), &z), &way)| {
+            *room = if way == ROOT { (sea_m - z).max(0.0) } else { 0.0 };
+            *load = if way == ROOT { load.max(0.0) } else { 0.0 };
+        });
         for &(i, _) in &self.base.edge {
-            room[i] = 0.0;
+            self.surface_m[i] = 0.0;
         }
-        let spread_m2 = law.marine_diffusivity_m2_per_yr * years;
-        coast::lay(self.grid(), load, &mut room, spread_m2, height_m)
+        let (compass, room) = (self.router.compass(), &self.surface_m);
+        let left = self.coast.lay(compass, &mut self.load_m, room, law.marine_reach_m, height_m);
+        if left > 0.0 { coast::fill_evenly(left, sea_m, |i| room[i] > 0.0, height_m) } else { 0.0 }
     }
 
     /// Hillslopes; gives what left over a rim that keeps its height.
@@ -368,7 +366,7 @@ impl Carver {
             }
             None => height_m.par_iter().map(|&z| if z >= sea_m { 1.0 } else { 0.0 }).collect(),
         };
-        diffuse(self.grid(), height_m, law.diffusivity_m2_per_yr * years, &open, either);
+        diffuse(self.grid(), height_m, law.diffusivity_m2_per_yr * years, &open);
         let mut left_m = 0.0;
         for (i, z) in fixed {
             left_m += std::mem::replace(&mut height_m[i], z) - z;

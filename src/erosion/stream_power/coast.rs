@@ -1,47 +1,109 @@
-//! What rivers bring to the sea is laid down along the coast.
+//! What rivers bring to the sea is laid down off their mouths.
 //!
-//! Each mouth's load spreads over the sea as by diffusion over the step, `K_m·t`; where that would rise above the sea the
-//! surplus spreads on from there, over what room is left. What is still left after some rounds fills the sea evenly.
+//! The load goes outwards from the mouths, nearest cells first (Dial's buckets over steps of 5 and 7, which is 1 and √2 to one
+//! part in a hundred). Each cell keeps the share that makes the load fall to 1/e over the reach, or what fits below a shelf
+//! that sinks gently from the mouth, and hands the rest on to its neighbours further out. A mouth that is full becomes land,
+//! and the river goes on from there. Only cells that load reaches are visited.
 
-use rayon::prelude::*;
+use std::collections::VecDeque;
 
-use crate::{
-    erosion::diffusion::{both, diffuse},
-    grid::Grid,
-};
+use crate::flow::Compass;
 
-/// Rounds of spreading.
-const ROUNDS: usize = 4;
+/// Fall of a full shelf away from the mouth, rise over run; continental shelves have 1 to 2 m a km.
+const SHELF_SLOPE: f64 = 1e-3;
+/// Load that is not worth dividing, m.
+const LEAST_M: f64 = 1e-3;
+/// Lengths of the eight steps, in fifths of a cell.
+const FIFTHS: [u32; 8] = [7, 5, 7, 5, 5, 7, 5, 7];
 
-/// Lays `load_m` (thickness, at the cells where it arrives) over the sea and gives what found no room, m.
-/// `room_m` is the depth of water a cell can take, 0 on land.
-pub(super) fn lay(grid: Grid, load_m: Vec<f64>, room_m: &mut [f64], spread_m2: f64, laid_m: &mut [f64]) -> f64 {
-    let mut load = load_m;
-    let mut open = vec![0.0f32; load.len()];
-    for _ in 0..ROUNDS {
-        // What is full lets nothing pass but what has yet to leave it.
-        open.par_iter_mut().zip(&*room_m).zip(&load).for_each(|((open, &room), &load)| {
-            *open = if room > 0.0 || load > 0.0 { 1.0 } else { 0.0 };
-        });
-        diffuse(grid, &mut load, spread_m2, &open, both);
-        (&mut load, &mut *room_m, &mut *laid_m).into_par_iter().for_each(|(load, room, laid)| {
-            let settles = load.min(*room).max(0.0);
-            *laid += settles;
-            *room -= settles;
-            *load -= settles;
-        });
-        if load.iter().all(|&load| load <= 0.0) {
+/// The waters off a coast, with buffers kept.
+#[derive(Default)]
+pub(super) struct Coast {
+    /// Distance from the nearest mouth in fifths of a cell; `u32::MAX` where no load has come.
+    distance: Vec<u32>,
+    touched: Vec<u32>,
+    /// Cells by distance, from the one at hand on.
+    rings: VecDeque<Vec<u32>>,
+}
+
+impl Coast {
+    /// Lays `load_m` down: thickness, where it arrives; used up. `room_m` is the depth of water a cell can take, 0 on
+    /// land. Adds to `ground_m` and gives what found no room, as thickness summed over cells.
+    pub(super) fn lay(
+        &mut self,
+        compass: &Compass,
+        load_m: &mut [f64],
+        room_m: &[f64],
+        reach_m: f64,
+        ground_m: &mut [f64],
+    ) -> f64 {
+        self.distance.resize(load_m.len(), u32::MAX);
+        self.rings.clear();
+        self.rings.resize_with(8, Vec::new);
+        for i in (0..load_m.len()).filter(|&i| load_m[i] > 0.0) {
+            self.distance[i] = 0;
+            self.touched.push(i as u32);
+            self.rings[0].push(i as u32);
+        }
+        let keeps = 1.0 - libm::exp(-compass.grid.cell_m / reach_m.max(1e-3 * compass.grid.cell_m));
+        let fall = SHELF_SLOPE * compass.grid.cell_m / 5.0;
+        let (mut left, mut at) = (0.0, 0u32);
+        while self.rings.iter().any(|ring| !ring.is_empty()) {
+            let ring = self.rings.pop_front().unwrap_or_default();
+            self.rings.push_back(Vec::new());
+            for i in ring.into_iter().map(|i| i as usize) {
+                // Listed again nearer by.
+                if self.distance[i] != at {
+                    continue;
+                }
+                let load = std::mem::take(&mut load_m[i]);
+                let wants = if load < LEAST_M { load } else { keeps * load };
+                let settles = wants.min(room_m[i] - fall * at as f64).max(0.0);
+                ground_m[i] += settles;
+                left += self.hand_on(compass, i, load - settles, load_m, room_m);
+            }
+            at += 1;
+        }
+        for i in self.touched.drain(..) {
+            self.distance[i as usize] = u32::MAX;
+        }
+        left
+    }
+
+    /// Divides a load among the neighbours that have not had their turn; gives it back where there is none.
+    fn hand_on(&mut self, compass: &Compass, i: usize, load: f64, load_m: &mut [f64], room_m: &[f64]) -> f64 {
+        if load <= 0.0 {
             return 0.0;
         }
+        let at = self.distance[i];
+        let outward = |(_, j): &(u8, usize)| room_m[*j] > 0.0 && self.distance[*j] > at;
+        let further: Vec<(u8, usize)> = compass.around(i).filter(outward).collect();
+        let shares: f64 = further.iter().map(|&(way, _)| 1.0 / FIFTHS[way as usize] as f64).sum();
+        for &(way, j) in &further {
+            let step = FIFTHS[way as usize];
+            load_m[j] += load / (step as f64 * shares);
+            if at + step < self.distance[j] {
+                if self.distance[j] == u32::MAX {
+                    self.touched.push(j as u32);
+                }
+                self.distance[j] = at + step;
+                self.rings[step as usize - 1].push(j as u32);
+            }
+        }
+        if further.is_empty() { load } else { 0.0 }
     }
-    let (left, room): (f64, f64) = (load.iter().sum(), room_m.iter().sum());
+}
+
+/// Fills a sea evenly with what found no other place; gives what is more than it holds, as thickness summed over cells.
+pub(super) fn fill_evenly(left_m: f64, sea_level_m: f64, is_sea: impl Fn(usize) -> bool, ground_m: &mut [f64]) -> f64 {
+    let depth = |i: usize, z: f64| if is_sea(i) { (sea_level_m - z).max(0.0) } else { 0.0 };
+    let room: f64 = ground_m.iter().enumerate().map(|(i, &z)| depth(i, z)).sum();
     if room <= 0.0 {
-        return left;
+        return left_m;
     }
-    let share = (left / room).min(1.0);
-    for (room, laid) in room_m.iter_mut().zip(laid_m) {
-        *laid += share * *room;
-        *room -= share * *room;
+    let share = (left_m / room).min(1.0);
+    for (i, z) in ground_m.iter_mut().enumerate() {
+        *z += share * depth(i, *z);
     }
-    left - share * room
+    left_m - share * room
 }

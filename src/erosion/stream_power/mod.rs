@@ -5,6 +5,8 @@ mod carver;
 mod coast;
 mod law;
 mod solver;
+#[cfg(test)]
+mod tests;
 
 pub use carver::{Carver, Forcing, Law, Moved};
 pub use solver::Solver;
@@ -53,9 +55,9 @@ pub struct StreamPowerParams {
     /// Diffusivity of hillslopes.
     #[schemars(range(min = 0.0, max = 10.0), extend("x-unit" = "m2/yr", "x-effect" = "rounder crests"))]
     pub diffusivity_m2_per_yr: f64,
-    /// Diffusivity of sediment in the sea.
-    #[schemars(range(min = 0.0, max = 10000.0), extend("x-unit" = "m2/yr", "x-effect" = "carries sediment further out"))]
-    pub marine_diffusivity_m2_per_yr: f64,
+    /// Distance from its mouth over which a river's load falls to 1/e in the sea.
+    #[schemars(range(min = 0.0, max = 1000.0), extend("x-unit" = "km", "x-effect" = "carries sediment further out"))]
+    pub marine_reach_km: f64,
     /// Steepest slope down to a river; what is steeper slides.
     #[schemars(range(min = 1.0, max = 89.0), extend("x-unit" = "deg", "x-effect" = "steeper walls"))]
     pub talus_angle_deg: f64,
@@ -81,7 +83,7 @@ impl Default for StreamPowerParams {
             rain_mm_per_yr: 1000.0,
             deposition: 0.0,
             diffusivity_m2_per_yr: 0.01,
-            marine_diffusivity_m2_per_yr: 200.0,
+            marine_reach_km: 15.0,
             talus_angle_deg: 35.0,
             step_kyr: 100.0,
             rim: Rim::Free,
@@ -100,7 +102,7 @@ impl StreamPowerParams {
             deposition: self.deposition,
             steepest: libm::tan(self.talus_angle_deg.to_radians()),
             diffusivity_m2_per_yr: self.diffusivity_m2_per_yr,
-            marine_diffusivity_m2_per_yr: self.marine_diffusivity_m2_per_yr,
+            marine_reach_m: 1e3 * self.marine_reach_km,
             rim: self.rim,
             lifts_base: self.coupled,
         }
