@@ -5,6 +5,8 @@
 
 mod column;
 mod diffusion;
+mod hillslope;
 pub mod stream_power;
 
+pub use hillslope::HillslopeParams;
 pub use stream_power::StreamPowerParams;

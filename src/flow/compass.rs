@@ -40,6 +40,19 @@ impl Compass {
         i.wrapping_add_signed(self.offset[way as usize & 7])
     }
 
+    /// Calls `f` with every neighbour on the map and the way to it; for loops that wait for nothing else.
+    #[inline]
+    pub fn each(&self, i: usize, mut f: impl FnMut(u8, usize)) {
+        let (x, y) = self.grid.cell_of(i);
+        if x > 0 && y > 0 && x + 1 < self.grid.width && y + 1 < self.grid.height {
+            for way in 0..8u8 {
+                f(way, i.wrapping_add_signed(self.offset[way as usize]));
+            }
+        } else {
+            self.around(i).for_each(|(way, j)| f(way, j));
+        }
+    }
+
     /// The neighbours on the map, each with the way to it.
     pub fn around(&self, i: usize) -> impl Iterator<Item = (u8, usize)> + use<> {
         let (x, y) = self.grid.cell_of(i);

@@ -1,4 +1,4 @@
-//! Priority-flood: fills every depression to its spill point and notes which way it spills (Barnes, Lehman and Mulla 2014).
+//! The reference that tests hold the lake graph against. Priority-flood: fills every depression to its spill point and notes which way it spills (Barnes, Lehman and Mulla 2014).
 
 use std::{
     cmp::Ordering,
@@ -13,10 +13,6 @@ use super::neighbours;
 pub struct Flood {
     /// Height without depressions, m.
     pub surface_m: Vec<f64>,
-    /// The cell from which the flood reached each cell; its own index at an outlet.
-    pub parent: Vec<u32>,
-    /// All cells in the order of the flood: never one before its parent, heights never falling.
-    pub order: Vec<u32>,
 }
 
 #[derive(PartialEq)]
@@ -45,8 +41,6 @@ impl PartialOrd for Front {
 pub fn flood(grid: Grid, height_m: &[f64], outlet: &[bool]) -> Flood {
     let cells = grid.cells();
     let mut surface_m = height_m.to_vec();
-    let mut parent: Vec<u32> = (0..cells as u32).collect();
-    let mut order = Vec::with_capacity(cells);
     let mut seen = outlet.to_vec();
     let mut heap = BinaryHeap::new();
     let mut turn = 0;
@@ -57,13 +51,11 @@ pub fn flood(grid: Grid, height_m: &[f64], outlet: &[bool]) -> Flood {
     // Cells raised to the level of the flood need no sorting.
     let mut pool: VecDeque<u32> = VecDeque::new();
     while let Some(cell) = pool.pop_front().or_else(|| heap.pop().map(|front| front.cell)) {
-        order.push(cell);
         let level = surface_m[cell as usize];
         for (j, _) in neighbours(grid, cell as usize) {
             if std::mem::replace(&mut seen[j], true) {
                 continue;
             }
-            parent[j] = cell;
             if surface_m[j] <= level {
                 surface_m[j] = level;
                 pool.push_back(j as u32);
@@ -73,5 +65,5 @@ pub fn flood(grid: Grid, height_m: &[f64], outlet: &[bool]) -> Flood {
             }
         }
     }
-    Flood { surface_m, parent, order }
+    Flood { surface_m }
 }

@@ -5,13 +5,19 @@
 
 mod compass;
 mod drainage;
+mod fan;
 #[cfg(test)]
 mod flood;
+mod lakes;
+mod network;
 mod router;
 mod spill;
 
 pub use compass::{Compass, LENGTHS, STEPS, opposite};
 pub use drainage::Drainage;
+pub use fan::FREEMAN;
+pub use lakes::Lake;
+pub use network::NONE;
 pub use router::{ROOT, Router};
 
 use crate::grid::{Edges, Field, Grid};

@@ -91,17 +91,17 @@ impl Spill {
         while at < self.cells.len() {
             let c = self.cells[at] as usize;
             at += 1;
-            for (step, k) in compass.around(c) {
+            let floor = z[c] == z[pit];
+            compass.each(c, |step, k| {
                 // A flat floor is one pit: its other cells are led to this one.
-                let floor = way[k] == PIT && self.label[k] == 0 && z[k] == z[pit] && z[c] == z[pit];
-                if floor {
+                if floor && way[k] == PIT && self.label[k] == 0 && z[k] == z[pit] {
                     way[k] = opposite(step);
                 }
-                if floor || (way[k] == opposite(step) && self.label[k] == 0) {
+                if way[k] == opposite(step) && self.label[k] == 0 {
                     self.label[k] = basin;
                     self.cells.push(k as u32);
                 }
-            }
+            });
         }
         self.first.push(self.cells.len());
     }
@@ -111,29 +111,26 @@ impl Spill {
         self.passes.clear();
         // The pass already known from the basin at hand to another one.
         let mut known = vec![u32::MAX; self.basins() + 1];
-        for basin in 1..=self.basins() {
-            let begin = self.passes.len();
+        let (label, passes) = (&self.label, &mut self.passes);
+        for basin in 1..self.first.len() {
+            let begin = passes.len();
             for &i in &self.cells[self.first[basin - 1]..self.first[basin]] {
-                for (way, j) in compass.around(i as usize) {
-                    let other = self.label[j];
+                compass.each(i as usize, |way, j| {
+                    let other = label[j];
                     // Each pair is listed by the later of the two.
                     if other as usize >= basin {
-                        continue;
+                        return;
                     }
                     let height_m = z[i as usize].max(z[j]);
                     let pass = Pass { height_m, from: basin as u32, to: other, cell: i, way };
-                    match known[other as usize] as usize {
-                        at if at >= begin && at < self.passes.len() => {
-                            if height_m < self.passes[at].height_m {
-                                self.passes[at] = pass;
-                            }
-                        }
-                        _ => {
-                            known[other as usize] = self.passes.len() as u32;
-                            self.passes.push(pass);
-                        }
+                    let at = known[other as usize] as usize;
+                    if at < begin || at >= passes.len() {
+                        known[other as usize] = passes.len() as u32;
+                        passes.push(pass);
+                    } else if height_m < passes[at].height_m {
+                        passes[at] = pass;
                     }
-                }
+                });
             }
         }
     }

@@ -9,7 +9,7 @@ use serde_json::Value as Json;
 use crate::{
     climate::ClimateParams,
     edit::{HardnessParams, ImportParams, UpliftParams, ZoomParams},
-    erosion::StreamPowerParams,
+    erosion::{HillslopeParams, StreamPowerParams},
     process::{Placement, Process, ProcessError},
     rivers::RiversParams,
     tectonics::PlatesParams,
@@ -130,6 +130,9 @@ fn table() -> Vec<StageKind> {
         },
         row("stream_power", "Erosion by rivers", "Rivers cut into rising land over geologic time.", |rivers: StreamPowerParams, setting| {
             Ok(rivers.process(setting.placement, setting.steps))
+        }),
+        row("hillslope", "Hillslopes", "Soil creeps down slopes and rounds crests.", |creep: HillslopeParams, setting| {
+            Ok(creep.process(setting.placement, setting.steps))
         }),
         row("uplift", "Uplift", "Sets how fast rock is raised, where and when.", |uplift: UpliftParams, setting| {
             Ok(uplift.process(setting.placement))

@@ -57,6 +57,8 @@ const CASES: &[Case] = &[
         params: "duration_myr = 0.3\ndeposition = 1.0\nrim = 'fixed'\n",
         may_leave_out: &[Layer::Lava],
     },
+    Case { kind: "hillslope", params: "steps = 3\nduration_kyr = 1e5\n", may_leave_out: &[Layer::Lava] },
+    Case { kind: "hillslope", params: "steps = 3\nduration_kyr = 1e5\nmask = 'height > 0'\n", may_leave_out: &[Layer::Lava] },
     case("import", "blend = 'max'\nsmooth = 1.0\nhigh_m = 3000.0\nmask = 'height > 100'\n"),
 ];
 

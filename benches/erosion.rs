@@ -1,0 +1,91 @@
+//! Rivers over a raster: routing alone, and a whole step of stream power (route, erode, diffuse), on young ground full of
+//! pits and on ground that rivers have shaped; with what memory gives beside it.
+
+use std::hint::black_box;
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use rayon::prelude::*;
+use upthrust::{
+    erosion::stream_power::{Carver, Forcing, Law, Rim, StreamPowerParams},
+    flow::Router,
+    grid::{Edges, Field, Grid},
+    noise::{Fractal, Key},
+};
+
+const SIZES: [usize; 3] = [512, 1024, 2048];
+
+/// Level ground with a metre of noise on hills of some hundred.
+fn young(size: usize) -> (Grid, Vec<f64>) {
+    let grid = Grid::new(size, size, 1e6, Edges::Open);
+    let key = Key::new(5);
+    let field = Field::from_fn(grid, |x, y| {
+        let [x, y] = grid.center_m(x, y);
+        Fractal::default().at([x / 2e5, y / 2e5], key) as f32
+    });
+    (grid, field.data.iter().map(|&v| 500.0 + 300.0 * v as f64).collect())
+}
+
+fn law() -> Law {
+    Law { rim: Rim::Fixed, ..StreamPowerParams::default().law() }
+}
+
+fn forcing(uplift: &[f32]) -> Forcing<'_> {
+    Forcing {
+        sea_level_m: f64::MIN,
+        uplift_mm_per_yr: Some(uplift),
+        rain_mm_per_yr: None,
+        uniform_rain_mm_per_yr: 1000.0,
+        ease: None,
+    }
+}
+
+fn steps(c: &mut Criterion) {
+    let mut group = c.benchmark_group("stream power");
+    group.sample_size(10);
+    for size in SIZES {
+        let (grid, ground) = young(size);
+        let uplift = vec![0.5f32; grid.cells()];
+        let mut carver = Carver::new(grid);
+        group.throughput(Throughput::Elements(grid.cells() as u64));
+        group.bench_function(BenchmarkId::new("step on young ground", size), |b| {
+            b.iter_batched_ref(
+                || ground.clone(),
+                |z| carver.step(&law(), &forcing(&uplift), z, 1e5),
+                criterion::BatchSize::LargeInput,
+            )
+        });
+        let mut shaped = ground.clone();
+        (0..60).for_each(|_| drop(carver.step(&law(), &forcing(&uplift), &mut shaped, 1e5)));
+        group.bench_function(BenchmarkId::new("step", size), |b| {
+            b.iter(|| carver.step(&law(), &forcing(&uplift), &mut shaped, 1e5))
+        });
+        let mut router = Router::new(grid);
+        let outlet: Vec<bool> = (0..grid.cells()).map(|i| i < size).collect();
+        group.bench_function(BenchmarkId::new("route", size), |b| b.iter(|| router.route(&shaped, &outlet)));
+    }
+    group.finish();
+}
+
+/// McCalpin's triad, `a = b + s·c`, on arrays that no cache holds: what memory gives, to hold the others against.
+fn triad(c: &mut Criterion) {
+    const N: usize = 1 << 25;
+    let mut group = c.benchmark_group("memory");
+    group.sample_size(10);
+    group.throughput(Throughput::Bytes(3 * 4 * N as u64));
+    let (mut a, b, x) = (vec![0.0f32; N], vec![1.0f32; N], vec![2.0f32; N]);
+    group.bench_function("STREAM triad", |bench| {
+        bench.iter(|| {
+            let parts = a.par_chunks_mut(1 << 16).zip(b.par_chunks(1 << 16)).zip(x.par_chunks(1 << 16));
+            parts.for_each(|((a, b), x)| {
+                for ((a, b), x) in a.iter_mut().zip(b).zip(x) {
+                    *a = b + 3.0 * x;
+                }
+            });
+        })
+    });
+    black_box(&a);
+    group.finish();
+}
+
+criterion_group!(benches, steps, triad);
+criterion_main!(benches);
