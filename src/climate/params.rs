@@ -62,7 +62,7 @@ impl Default for ClimateParams {
             rim_humidity: 0.75,
             air_km: 12.0,
             drift_km: 15.0,
-            lift_share: 0.35,
+            lift_share: 0.2,
             shadow_km: 250.0,
         }
     }

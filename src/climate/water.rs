@@ -4,6 +4,8 @@ use super::Zone;
 
 /// Nothing on Earth stands higher, m.
 const HIGHEST_M: f64 = 9000.0;
+/// More than this does not lie through a winter, whatever falls, mm: about the wettest glaciers of the fit below.
+const MOST_SNOW_MM: f64 = 2500.0;
 /// Least evaporation that air could take up in a year, mm: ice evaporates too.
 const LEAST_MM: f64 = 50.0;
 
@@ -22,7 +24,7 @@ pub fn runoff_mm_per_yr(rain_mm_per_yr: f64, temperature_degc: f64) -> f64 {
 /// Temperature of the warm season at which a year's snow just melts: that at the equilibrium line of glaciers, where
 /// `snow = 645 + 296 T + 9 T²` (Ohmura, Kasser and Funk 1992).
 pub fn snow_temperature_degc(snow_mm_per_yr: f64) -> f64 {
-    let snow = snow_mm_per_yr.clamp(0.0, 6000.0);
+    let snow = snow_mm_per_yr.clamp(0.0, MOST_SNOW_MM);
     (-296.0 + (296.0 * 296.0 - 36.0 * (645.0 - snow)).sqrt()) / 18.0
 }
 

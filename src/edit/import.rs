@@ -9,6 +9,7 @@ use super::{
     EditError, Problem,
     fill::fill,
     read::{self, Header, Heightmap, Scale},
+    sidecar::Sidecar,
     unstep::unstep,
 };
 use crate::{
@@ -36,10 +37,10 @@ pub struct ImportParams {
     /// Order of the bytes in a raw file.
     #[schemars(extend("x-effect" = "little is usual; big is what old Macintoshes wrote"))]
     pub endian: Endian,
-    /// Height of black (of 0 in a file of fractions); 0, or 2000 m below a white under the sea, if neither given nor stated by the file.
+    /// Height of black (of 0 in a file of fractions), if neither the file nor an export's FILE.json beside it states it: 0, or 2000 m below a white under the sea.
     #[schemars(range(min = -12000.0, max = 20000.0), extend("x-unit" = "m", "x-effect" = "higher lowlands"))]
     pub low_m: Option<f64>,
-    /// Height of white (of 1 in a file of fractions); 2000 m above black if neither given nor stated by the file.
+    /// Height of white (of 1 in a file of fractions), if neither the file nor an export's FILE.json beside it states it: 2000 m above black.
     #[schemars(range(min = -12000.0, max = 20000.0), extend("x-unit" = "m", "x-effect" = "higher mountains"))]
     pub high_m: Option<f64>,
     /// How far a height may move to take out the stairs of few bits, in half steps of the file: 1 is enough for 8 bits.
@@ -119,31 +120,47 @@ impl ImportParams {
     /// What the file says of itself; reads no heights.
     pub fn probe(&self) -> Result<Header, EditError> {
         self.named(&self.path, || {
+            let said = Sidecar::beside(&self.path);
+            let told = self.told(said.as_ref());
             let mut source = read::open(&self.path)?;
-            let header = read::header(&mut source, self)?;
-            self.scale(&header)?;
+            let mut header = read::header(&mut source, &told)?;
+            let said = said.filter(|said| said.fits(header.width, header.height));
+            told.scale(&header, said.as_ref())?;
+            header.cell_m = header.cell_m.or(said.map(|said| said.cell_m()));
             Ok(header)
         })
     }
 
+    /// The same with what a sidecar says of a raw file, which says nothing itself.
+    fn told(&self, said: Option<&Sidecar>) -> Self {
+        let Some(said) = said else { return self.clone() };
+        let endian = if said.big_endian() { Endian::Big } else { self.endian };
+        Self { size: self.size.or(Some(said.size)), endian, ..self.clone() }
+    }
+
     /// The file's heights at its own cells, filled and smoothed as asked for.
     pub fn read(&self) -> Result<Heightmap, EditError> {
-        self.named(&self.path, || self.decode(read::open(&self.path)?))
+        self.named(&self.path, || self.decode(read::open(&self.path)?, Sidecar::beside(&self.path)))
     }
 
     /// The same from bytes at hand, under a name whose ending tells the format.
     pub fn read_bytes(&self, name: &str, bytes: Vec<u8>) -> Result<Heightmap, EditError> {
-        self.named(name, || self.decode(read::Source::bytes(name, bytes)))
+        self.named(name, || self.decode(read::Source::bytes(name, bytes), None))
     }
 
     fn named<T>(&self, file: &str, read: impl FnOnce() -> Result<T, Problem>) -> Result<T, EditError> {
         read().map_err(|problem| EditError { file: file.to_owned(), problem })
     }
 
-    fn decode(&self, mut source: read::Source) -> Result<Heightmap, Problem> {
-        let header = read::header(&mut source, self)?;
-        let scale = self.scale(&header)?;
-        let mut map = read::heights(&mut source, &header, &scale, self)?;
+    fn decode(&self, mut source: read::Source, said: Option<Sidecar>) -> Result<Heightmap, Problem> {
+        let told = self.told(said.as_ref());
+        let header = read::header(&mut source, &told)?;
+        let said = said.filter(|said| said.fits(header.width, header.height));
+        let scale = told.scale(&header, said.as_ref())?;
+        let mut map = read::heights(&mut source, &header, &scale, &told)?;
+        if said.is_some_and(|said| said.south_first()) {
+            map.heights = map.heights.chunks_exact(map.width).rev().flatten().copied().collect();
+        }
         let holes = map.heights.iter().filter(|v| v.is_nan()).count();
         if holes == map.heights.len() {
             return Err(Problem::NoHeights);
@@ -162,17 +179,19 @@ impl ImportParams {
     }
 
     /// Which height a value of the file stands for.
-    fn scale(&self, header: &Header) -> Result<Scale, Problem> {
+    fn scale(&self, header: &Header, said: Option<&Sidecar>) -> Result<Scale, Problem> {
         let stated = header.metres && self.low_m.is_none() && self.high_m.is_none();
         if stated {
             return Ok(Scale { black: 0.0, low_m: 0.0, per_value_m: 1.0, step_m: header.sample.step() });
         }
         let (black, white) = header.sample.ends();
-        let low_m = self.low_m.unwrap_or(match self.high_m {
+        let said = said.filter(|_| !header.metres);
+        let high_m = self.high_m.or(said.and_then(|said| said.white_m));
+        let low_m = self.low_m.or(said.and_then(|said| said.black_m)).unwrap_or(match high_m {
             Some(high_m) if high_m <= 0.0 => high_m - WHITE_M,
             _ => 0.0,
         });
-        let high_m = self.high_m.unwrap_or(low_m + WHITE_M);
+        let high_m = high_m.unwrap_or(low_m + WHITE_M);
         if low_m >= high_m {
             return Err(Problem::Levels(low_m, high_m));
         }
@@ -189,7 +208,14 @@ impl ImportParams {
                 self.path
             ));
         }
-        if !header.metres && self.low_m.is_none() && self.high_m.is_none() {
+        let said = Sidecar::beside(&self.path).filter(|said| said.fits(header.width, header.height));
+        let levels = said.as_ref().filter(|_| !header.metres).and_then(|said| Some((said.black_m?, said.white_m?)));
+        if let Some((black_m, white_m)) = levels.filter(|_| self.low_m.is_none() && self.high_m.is_none()) {
+            remarks.push(format!(
+                "{0}: black is {black_m} m and white {white_m} m, as {0}.json beside it says (low_m, high_m)",
+                self.path
+            ));
+        } else if !header.metres && self.low_m.is_none() && self.high_m.is_none() {
             remarks.push(format!(
                 "{}: the file does not say how high it is; black is taken for 0 m and white for {WHITE_M} m (low_m, high_m)",
                 self.path

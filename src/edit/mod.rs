@@ -10,6 +10,7 @@
 //! | `inflow` | the rivers that come in over a window's rim |
 //! | `import` | the stage: its parameters, and how a file becomes the heights of a map |
 //! | `read` | the formats, one file each: a header first, heights only when it is sound |
+//! | `sidecar` | what our own export says beside a file |
 //! | `fill` | heights where a file has none |
 //! | `unstep` | taking the stairs out of heights stored in few bits |
 //!
@@ -22,6 +23,7 @@ mod import;
 mod inflow;
 mod read;
 mod region;
+mod sidecar;
 #[cfg(test)]
 mod tests;
 mod unstep;

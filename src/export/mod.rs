@@ -87,6 +87,33 @@ fn beside(path: &Path) -> PathBuf {
     path.with_file_name(format!(".{name}.partial-{}", std::process::id()))
 }
 
+/// Removes what a killed run of this program left beside `path`: files and folders named as [`beside`] names them, of
+/// processes that are no more. Where the system cannot say who runs, nothing is touched.
+fn sweep(path: &Path) {
+    let processes = Path::new("/proc");
+    if !processes.join("self").exists() {
+        return;
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    let stems = [path.file_name(), path.file_stem()].map(|name| name.unwrap_or_default().to_string_lossy());
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let rest = stems.iter().find_map(|stem| name.strip_prefix(&format!(".{stem}.partial-")));
+        let Some(rest) = rest else { continue };
+        let digits = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
+        let (process, ending) = rest.split_at(digits);
+        let ours = !process.is_empty() && (ending.is_empty() || ending.starts_with('.'));
+        if ours && !processes.join(process).exists() {
+            // It may belong to somebody else; then it stays.
+            let _ = match entry.file_type() {
+                Ok(kind) if kind.is_dir() => fs::remove_dir_all(entry.path()),
+                _ => fs::remove_file(entry.path()),
+            };
+        }
+    }
+}
+
 /// Lets `fill` write a file beside `path`, and moves it there when it is whole.
 pub fn write_whole(
     path: &Path,
@@ -115,4 +142,40 @@ pub fn write_picture(picture: &image::RgbImage, path: &Path) -> Result<(), Expor
             .write_image(picture.as_raw(), picture.width(), picture.height(), ExtendedColorType::Rgb8)
             .map_err(|e| ExportError::Encode { path: path.to_owned(), cause: e.to_string() })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_killed_run_left_is_swept_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = folder.path().join("film.mp4");
+        // No process has this number: Linux gives none above 2^22.
+        let (gone, here) = (4_194_999u32, std::process::id());
+        let left = [
+            format!(".film.partial-{gone}.mp4"),
+            format!(".film.mp4.partial-{gone}"),
+            format!(".film.partial-{gone}.mp4.nut"),
+        ];
+        let kept = [
+            format!(".film.partial-{here}.mp4"),
+            format!(".other.partial-{gone}.mp4"),
+            ".film.partial-x.mp4".into(),
+            "film.mp4".into(),
+        ];
+        for name in left.iter().chain(&kept) {
+            fs::write(folder.path().join(name), "x").unwrap();
+        }
+        let pictures = folder.path().join(format!(".film.mp4.partial-{}", gone + 1));
+        fs::create_dir(&pictures).unwrap();
+        fs::write(pictures.join("00001.png"), "x").unwrap();
+        sweep(&film);
+        let there = |name: &String| folder.path().join(name).exists();
+        assert!(kept.iter().all(there));
+        if Path::new("/proc/self").exists() {
+            assert!(!left.iter().any(there) && !pictures.exists());
+        }
+    }
 }

@@ -13,13 +13,13 @@ use crate::{
 
 /// Metres over the sea at which the ramps have their colours.
 const HEIGHTS_M: [f64; 6] = [0.0, 400.0, 1000.0, 2000.0, 3200.0, 4500.0];
-const DRY: [u32; 6] = [0xdfcda3, 0xdec695, 0xd6b686, 0xc3a078, 0xad8d70, 0xa1917f];
+const DRY: [u32; 6] = [0xddd0ad, 0xdac8a0, 0xcfb68f, 0xbda280, 0xaa8f77, 0xa19284];
 const TUNDRA: [u32; 6] = [0xaeac93, 0xaba78f, 0xa5a08c, 0x9f998c, 0x9d9892, 0x9f9c99];
 const TAIGA: [u32; 6] = [0x6a8c70, 0x769474, 0x8b9d79, 0xa0a084, 0xa29a8c, 0x9e9a96];
 const TEMPERATE: [u32; 6] = [0x86aa77, 0x9ab57d, 0xb6bd86, 0xc2b388, 0xae997b, 0xa09286];
 const TROPICAL: [u32; 6] = [0x679c66, 0x79a569, 0x99b175, 0xb4ae7d, 0xa99573, 0x9d8f82];
-/// Fresh snow.
-const SNOW: u32 = 0xfafbfd;
+/// Snow in plain light; the sunny side of it is white.
+const SNOW: u32 = 0xe8edf3;
 /// De Martonne's index of deserts' and of woods' beginnings.
 const WETNESS: [f32; 2] = [8.0, 38.0];
 /// Mean temperature between tundra and taiga, taiga and temperate, temperate and tropical land, and half the width of
@@ -27,7 +27,7 @@ const WETNESS: [f32; 2] = [8.0, 38.0];
 const BORDERS_DEGC: [f32; 3] = [-5.0, 4.0, 20.0];
 const HALF_K: f32 = 4.0;
 /// Where snow begins and where it is whole, m over the snow line: a soft edge.
-const SNOW_M: [f32; 2] = [-250.0, 450.0];
+const SNOW_M: [f32; 2] = [-200.0, 900.0];
 
 /// What a place is like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,7 +127,7 @@ mod tests {
             assert!(g > r && g > b, "{t}");
             assert!(dry[0] > dry[1] && dry[1] > dry[2], "{t}");
         }
-        assert!(at(800.0, -8.0, 3600.0).into_iter().all(|c| c > 0.9));
+        assert!(at(800.0, -12.0, 4200.0).into_iter().all(|c| c > 0.75));
         assert!(at(800.0, -8.0, 2700.0).into_iter().all(|c| c < 0.6));
     }
 

@@ -23,6 +23,14 @@ impl Ticks {
         Self(nice(low, high, 5).into_iter().map(|v| (((v - low) / (high - low)) as f32, number(v))).collect())
     }
 
+    /// Round numbers over a range of their square roots, from zero.
+    pub fn roots([_, high]: [f64; 2]) -> Self {
+        let steps = (-1..=6).flat_map(|power| [1.0, 2.0, 5.0].map(|m| m * libm::pow(10.0, f64::from(power))));
+        let (least, most) = (high * high / 60.0, high * high * (1.0 + 1e-9));
+        let marked = steps.filter(|v| (least..=most).contains(v)).map(|v| ((v.sqrt() / high) as f32, number(v)));
+        Self(std::iter::once((0.0, number(0.0))).chain(marked).collect())
+    }
+
     /// Powers of ten over a range of their logarithms.
     pub fn powers([low, high]: [f64; 2]) -> Self {
         let powers = libm::ceil(low - 1e-9) as i32..=libm::floor(high + 1e-9) as i32;
@@ -83,7 +91,7 @@ impl Legend {
         let (tints, sea_m) = (Tints::new(), scene.sea_m as f32);
         let humid = |height_m: f32| tints.at(HUMID, height_m, sea_m);
         let dry = |height_m: f32| tints.at(ARID, height_m, sea_m);
-        Self::split(scene, humid, Some(dry)).titled("Height, m; land of humid climate above, of dry below".to_owned())
+        Self::split(scene, humid, Some(dry))
     }
 
     fn split(scene: &Scene, land: impl Fn(f32) -> Rgb, lower: Option<impl Fn(f32) -> Rgb>) -> Self {
@@ -134,6 +142,11 @@ impl Legend {
         text::write(canvas, &self.title, [x, y + 11.0 * u], size, Align::Left, INK);
         match &self.body {
             Body::Bar { colours, lower, ticks, sea } => {
+                if lower.is_some() {
+                    let words = "humid above, dry below";
+                    let at = [x + width - text::width(words, 11.5 * u), y + 11.0 * u];
+                    text::write(canvas, words, at, 11.5 * u, Align::Left, FAINT);
+                }
                 let lower = lower.as_deref().unwrap_or(colours);
                 draw_bar(canvas, [x, y + 20.0 * u], width, u, ([colours, lower], ticks, *sea));
             }

@@ -9,7 +9,7 @@ use super::{
     furniture::{Legend, Ticks},
     palette::{Rgb, hex, mix},
     shade::shade,
-    swatches::{Colours, Scale, named},
+    swatches::{Colours, Scale, Steps, named},
     tint::{Scene, lit},
 };
 use crate::{
@@ -56,7 +56,11 @@ fn continuous(frame: &Frame, field: &Field<f32>, spec: &Spec) -> (Vec<Rgb>, Lege
 }
 
 fn scale_legend(spec: &Spec, scale: &Scale) -> Legend {
-    let ticks = if scale.powers() { Ticks::powers(scale.ends()) } else { Ticks::over(scale.ends()) };
+    let ticks = match scale.steps() {
+        Steps::Even => Ticks::over(scale.ends()),
+        Steps::Roots => Ticks::roots(scale.ends()),
+        Steps::Powers => Ticks::powers(scale.ends()),
+    };
     Legend::bar(title(spec), |t| scale.between(t), ticks)
 }
 

@@ -36,29 +36,43 @@ fn codes(palette: Palette) -> &'static [u32] {
     }
 }
 
+/// How colours go by values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Steps {
+    /// In proportion.
+    Even,
+    /// By square roots, so that a little rain is told from less.
+    Roots,
+    /// By powers of ten.
+    Powers,
+}
+
 /// The colours of a quantity.
 pub struct Scale {
     ramp: Ramp,
-    /// The values at its ends, or their logarithms.
+    /// The values at its ends, or their roots or logarithms.
     ends: [f64; 2],
-    powers: bool,
+    steps: Steps,
 }
 
 impl Scale {
     /// Over values of a layer; one by powers of ten ends at the greatest.
     pub fn over(spec: &Spec, [low, high]: [f64; 2]) -> Self {
-        let powers = spec.palette == Palette::Flow;
         let top = libm::log10(high.max(1e-9));
-        let ends = if powers { [top - DECADES, top] } else { [low, high] };
-        Self { ramp: Ramp::even(codes(spec.palette), ends), ends, powers }
+        let (steps, ends) = match spec.palette {
+            Palette::Flow => (Steps::Powers, [top - DECADES, top]),
+            Palette::Rain => (Steps::Roots, [0.0, high.max(1e-9).sqrt()]),
+            _ => (Steps::Even, [low, high]),
+        };
+        Self { ramp: Ramp::even(codes(spec.palette), ends), ends, steps }
     }
 
-    /// Whether it goes by powers of ten.
-    pub fn powers(&self) -> bool {
-        self.powers
+    /// How it goes by values.
+    pub fn steps(&self) -> Steps {
+        self.steps
     }
 
-    /// The values at its ends, or their logarithms.
+    /// The values at its ends, or their roots or logarithms.
     pub fn ends(&self) -> [f64; 2] {
         self.ends
     }
@@ -71,7 +85,11 @@ impl Scale {
     /// The colour of a value.
     #[inline]
     pub fn at(&self, value: f32) -> Rgb {
-        self.ramp.at(if self.powers { libm::log10f(value.max(1e-12)) } else { value })
+        self.ramp.at(match self.steps {
+            Steps::Even => value,
+            Steps::Roots => value.max(0.0).sqrt(),
+            Steps::Powers => libm::log10f(value.max(1e-12)),
+        })
     }
 }
 
@@ -163,7 +181,7 @@ mod tests {
     fn a_scale_of_powers_steps_evenly_by_tens() {
         let spec = Layer::Discharge.spec();
         let scale = Scale::over(&spec, [0.0, 1000.0]);
-        assert!(scale.powers());
+        assert_eq!(scale.steps(), Steps::Powers);
         assert_eq!(scale.at(1000.0), scale.between(1.0));
         let apart = scale.at(1.0).iter().zip(scale.between(0.4)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(apart < 1e-4, "{apart}");

@@ -24,7 +24,7 @@ pub enum Palette {
     Age,
     /// Steepness, grey to red.
     Slope,
-    /// Parched to soaked.
+    /// Parched to soaked, by square roots.
     Rain,
     /// Paper to deep water.
     Water,

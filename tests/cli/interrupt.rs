@@ -94,6 +94,24 @@ fn a_resumed_run_keeps_the_timeline_of_the_whole() {
     assert!(frames > 70, "{frames}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_resumed_run_with_nothing_left_to_film_says_so() {
+    let place = Place::new();
+    let recipe = "[[stage]]\nkind = \"fbm\"\n[[stage]]\nkind = \"rmp_peak\"\niterations = 5000\nblend = \"add\"\n";
+    place.write("long.toml", recipe);
+    let arguments = ["grow", "long.toml", "--size", "3000", "--out", "w"];
+    interrupted(&place, &arguments, Some("1/2 "));
+    // The stopped run stands at the end of the ground, and no more is wanted.
+    let rest = ["--resume", "--until", "fbm", "--video", "film.png"];
+    let said = place.run(&[&arguments[..], &rest].concat());
+    let what = "error: film.png: nothing was left to film: the stopped run had done its last step; --force grows and \
+                films it anew";
+    assert_eq!((said.code, said.err.lines().last()), (1, Some(what)), "{}", said.err);
+    assert!(place.path("w/manifest.json").exists() && !place.path("film.png").exists());
+    assert_eq!(place.entries(), ["long.toml", "w"]);
+}
+
 /// A run of a few seconds, in steps of some ten milliseconds, with checkpoints as often as can be.
 #[cfg(unix)]
 const KILLED: [&str; 9] =

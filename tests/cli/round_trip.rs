@@ -52,3 +52,30 @@ fn import_undoes_export() {
         assert!((step_m > 0.0) == (file == "h.png" || file.ends_with("16") || file == "h16.tif"), "{file}");
     }
 }
+
+#[test]
+fn our_own_export_comes_back_without_a_word() {
+    let place = Place::new();
+    assert_eq!(place.run(&["grow", "fbm-smooth", "--size", "96x64", "--quiet", "--out", "w"]).code, 0);
+    let truth = heights(&place, "w");
+    for flags in [&["h.png"][..], &["h.r16"], &["h.r16", "--big-endian"], &["h.r16", "--flip", "y"]] {
+        let said = place.run(&[&["export", "w"], flags, &["--force"]].concat());
+        assert_eq!(said.code, 0, "{flags:?}: {}", said.err);
+        place.write("back.toml", format!("[[stage]]\nkind = \"import\"\npath = \"{}\"\n", flags[0]));
+        let said = place.run(&["grow", "back.toml", "--out", "back", "--force"]);
+        assert_eq!(said.code, 0, "{flags:?}: {}", said.err);
+        assert!(said.err.contains(&format!("as {}.json beside it says", flags[0])), "{}", said.err);
+        let back = heights(&place, "back");
+        assert_eq!((back.grid.width, back.grid.height), (96, 64), "{flags:?}");
+        assert!((back.grid.cell_m / truth.grid.cell_m - 1.0).abs() < 1e-9, "{flags:?}");
+        let (low, high) = truth.range().unwrap();
+        let most = truth.data.iter().zip(&back.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        // Half a step, and what f32 rounds at a few thousand metres.
+        assert!(most <= 0.5 * (high - low) / 65535.0 + 5e-4, "{flags:?}: off by {most} m");
+    }
+    // What the person says counts for more than the file beside.
+    place.write("higher.toml", "[[stage]]\nkind = \"import\"\npath = \"h.png\"\nlow_m = 0.0\nhigh_m = 9000.0\n");
+    assert_eq!(place.run(&["export", "w", "h.png", "--force"]).code, 0);
+    assert_eq!(place.run(&["grow", "higher.toml", "--out", "higher"]).code, 0);
+    assert_eq!(heights(&place, "higher").range(), Some((0.0, 9000.0)));
+}

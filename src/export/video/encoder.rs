@@ -16,7 +16,7 @@ use super::{
     ffmpeg::{self, Ffmpeg, Running},
     numbered::Numbered,
 };
-use crate::export::ExportError;
+use crate::export::{ExportError, sweep};
 
 /// Pictures that may wait to be written.
 const WAITING: usize = 2;
@@ -67,6 +67,7 @@ impl Encoder {
             let what = format!("--ffmpeg-args: {} is made without ffmpeg", path.display());
             return Err(ExportError::FilmRequest(what));
         }
+        sweep(path);
         let (target, process) = match settings.format {
             Format::AnimatedPng => (Target::Animated(Animated::open(path, settings)?), None),
             Format::NumberedPng | Format::NumberedExr => (Target::Numbered(Numbered::open(path, settings)?), None),

@@ -31,6 +31,7 @@ impl NumberedFolder {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => return refuse("there is a file of that name"),
             _ => {}
         }
+        crate::export::sweep(folder);
         let beside = folder.with_file_name(format!(".{}.partial-{}", name.to_string_lossy(), std::process::id()));
         if let Err(cause) = fs::create_dir(&beside) {
             let why = cause.to_string();

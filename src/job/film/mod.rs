@@ -24,7 +24,7 @@ use std::path::PathBuf;
 
 use super::JobError;
 use crate::{
-    export::video::Encoder,
+    export::{ExportError, video::Encoder},
     grid::Grid,
     relief::film::{Animation, Options, Shot, Words},
     timeline::{Checkpoint, Moment},
@@ -53,6 +53,10 @@ pub struct Film {
     at: f64,
     next: f64,
     shot: Option<Shot>,
+    /// The place it will have.
+    file: PathBuf,
+    /// Whether any picture was drawn.
+    begun: bool,
     /// Whether the film begins with flat ground.
     flat_before: bool,
     /// Whether the last picture shows the last shot itself.
@@ -76,6 +80,8 @@ impl Film {
             at: 0.0,
             next: 1.0,
             shot: None,
+            file: plan.file.clone(),
+            begun: false,
             flat_before: true,
             shown: false,
         })
@@ -142,6 +148,7 @@ impl Film {
             String::new()
         };
         let caption = self.clips.get(self.stage).map_or("", |clip| clip.caption.as_str());
+        self.begun = true;
         let mut picture = self.encoder.blank();
         self.animation.draw([from, to], share, Words { caption, clock: &clock }, &mut picture);
         Ok(self.encoder.push(picture)?)
@@ -153,6 +160,13 @@ impl Film {
             && !self.shown
         {
             self.draw([&last, &last], 1.0, 1.0)?;
+        }
+        if !self.begun {
+            // The encoder is dropped and leaves nothing.
+            let path = PathBuf::from(self.file.file_name().unwrap_or_default());
+            let cause =
+                "nothing was left to film: the stopped run had done its last step; --force grows and films it anew";
+            return Err(ExportError::Film { path, cause: cause.to_owned() }.into());
         }
         Ok(self.encoder.finish()?)
     }
