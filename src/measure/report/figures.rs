@@ -89,7 +89,9 @@ fn law_marks(metric: &str, sign: f64, laws_found: &[Law]) -> Vec<Mark> {
         [one] => {
             marks.push(Mark::Dots(one.sample.clone()));
             marks.push(law(one.line, one.fitted[0], one.fitted[1]));
-            marks.push(Mark::Points(one.medians.clone()));
+            // Many points are a curve.
+            let medians = one.medians.clone();
+            marks.push(if medians.len() > 20 { Mark::Curve(medians) } else { Mark::Points(medians) });
         }
         many => marks.extend(many.iter().map(|l| Mark::Many(l.medians.clone()))),
     }
@@ -178,7 +180,7 @@ fn hack(surveys: &[&Survey]) -> Option<Figure> {
     let found: Vec<Law> = surveys
         .iter()
         .filter_map(|s| s.hack.as_ref().ok())
-        .map(|h| Law { medians: h.medians.clone(), sample: h.sample.clone(), line: &h.line, fitted: ends(&h.medians) })
+        .map(|h| Law { medians: h.medians.clone(), sample: h.sample.clone(), line: &h.line, fitted: h.fitted_km2 })
         .collect();
     found.first()?;
     Some(Figure {
@@ -333,6 +335,8 @@ fn slopes(surveys: &[&Survey]) -> Option<Figure> {
     let width = 90.0 / bins as f64;
     let mut marks = Vec::new();
     let most = found.iter().flat_map(|s| s.histogram.iter().copied()).fold(0.0, f64::max);
+    let last = found.iter().filter_map(|s| s.histogram.iter().rposition(|&h| h > 0.0)).max().unwrap_or(0);
+    let steepest = ((last + 1) as f64 * width).max(45.0);
     let comparable = METRICS
         .iter()
         .any(|m| m.name == "mean_slope" && m.cells_m.is_none_or(|cells| surveys.iter().all(|s| cells.holds(s.cell_m))));
@@ -354,7 +358,7 @@ fn slopes(surveys: &[&Survey]) -> Option<Figure> {
         title: "Slopes of the land",
         caption: format!("Share of the land by slope.{shaded}"),
         plot: Plot {
-            x: Axis::linear("slope, degrees").from_to(0.0, 90.0),
+            x: Axis::linear("slope, degrees").from_to(0.0, steepest),
             y: Axis::linear("share of the land").from_to(0.0, (1.06 * most).max(0.05)),
             marks,
         },

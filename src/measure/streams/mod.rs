@@ -25,6 +25,8 @@ use crate::{
 pub const CHANNEL_M2: f64 = 1e6;
 /// Cells that a channel's catchment has at least.
 pub const CHANNEL_CELLS: f64 = 20.0;
+/// Laws of size are fitted up to this share of the largest catchment.
+const TRUNKS: f64 = 0.05;
 /// No mouth: a cell of the sea.
 const NONE: u32 = u32::MAX;
 
