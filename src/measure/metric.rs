@@ -180,10 +180,10 @@ pub fn short(value: f64) -> String {
         return "0".to_owned();
     }
     let digits = libm::floor(libm::log10(value.abs())) as i32;
-    if !(-3..6).contains(&digits) {
+    if !(-4..6).contains(&digits) {
         return format!("{value:.2e}");
     }
-    let text = format!("{value:.*}", (2 - digits).clamp(0, 5) as usize);
+    let text = format!("{value:.*}", (2 - digits).clamp(0, 6) as usize);
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }

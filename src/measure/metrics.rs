@@ -102,7 +102,7 @@ pub const METRICS: &[Metric] = &[
         unit: "1",
         band: Some(Band::new(0.4, 0.46)),
         cells_m: TREES,
-        method: "share of the land that drains more than an area a, P ∝ a^−β, from the channels' threshold to a twentieth of the largest catchment",
+        method: "share of a basin that drains more than an area a, P ∝ a^−β, from the channels' threshold to a twentieth of the basin; the median of the 12 largest basins",
         source: "Rodriguez-Iturbe et al. 1992: 0.43 ± 0.03",
         value: |s| Ok(s.exceedance.as_ref().map_err(Missing::clone)?.beta),
     },

@@ -1,5 +1,6 @@
 //! Solvers against answers known in closed form.
 
+mod measure;
 mod noise;
 mod rmp;
 mod terrain;

@@ -39,7 +39,7 @@ fn a_page_holds_every_metric_and_is_whole() {
     let page = std::fs::read_to_string(place.path("r.html")).unwrap();
     for metric in METRICS {
         assert!(said.out.contains(metric.title), "{} in\n{}", metric.title, said.out);
-        assert!(page.matches(&format!("<td>{}</td>", metric.title)).count() == 2, "{}", metric.title);
+        assert!(page.matches(&format!(">{}</td>", metric.title)).count() == 2, "{}", metric.title);
     }
     assert!(said.out.contains("metrics that can be compared lie in Earth's band"), "{}", said.out);
     assert!(well_formed(&page) && !well_formed("<p><b></p>"));

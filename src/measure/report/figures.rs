@@ -252,10 +252,10 @@ fn exceedance(surveys: &[&Survey]) -> Option<Figure> {
     Some(Figure {
         name: "exceedance",
         title: "Area exceedance",
-        caption: format!("Share of the land that drains more than an area.{}", in_band("area_exceedance")),
+        caption: format!("Share of the largest basin that drains more than an area.{}", in_band("area_exceedance")),
         plot: Plot {
             x: Axis::log("area drained, km²"),
-            y: Axis::log("share of the land"),
+            y: Axis::log("share of the basin"),
             marks: law_marks("area_exceedance", -1.0, &found),
         },
     })

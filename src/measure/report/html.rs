@@ -20,9 +20,9 @@ p{margin:.3rem 0}.soft,figcaption,.aside{color:var(--soft)}
 table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
 th{text-align:left;font-weight:600;border-bottom:1px solid var(--soft)}
 td{border-bottom:1px solid var(--rule);vertical-align:middle}th,td{padding:.28rem .7rem .28rem 0}
-.number{text-align:right;white-space:nowrap}.band{white-space:nowrap}
+.number{text-align:right}.number,.band,.name{white-space:nowrap}
 td.inside{color:var(--earth-ink)}td.outside{color:var(--world);font-weight:600}
-svg.strip{display:block;width:170px;height:16px}.strip .rule{stroke:var(--rule)}.strip .earth{fill:var(--earth)}
+svg.strip{display:block;width:150px;height:14px}.strip .rule{stroke:var(--rule)}.strip .earth{fill:var(--earth)}
 .strip .dot{fill:var(--world)}.strip .faint{fill:var(--world);opacity:.4}
 .plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(24rem,1fr));gap:1.6rem 1.4rem}
 figure{margin:0;break-inside:avoid}figure h3{font-size:1rem;margin:0 0 .2rem}figure svg{width:100%;height:auto;display:block}
@@ -74,7 +74,7 @@ fn table(page: &mut String, subjects: &[Subject]) {
         let range = if many { format!("<td class=\"number\">{}</td>", escaped(&row.range)) } else { String::new() };
         let _ = writeln!(
             page,
-            "<tr><td>{}</td><td class=\"number\">{}</td>{range}<td class=\"band\">{}</td><td>{}</td>\
+            "<tr><td class=\"name\">{}</td><td class=\"number\">{}</td>{range}<td class=\"band\">{}</td><td>{}</td>\
              <td class=\"{}\">{}</td></tr>",
             escaped(row.title),
             escaped(&row.value),
