@@ -18,6 +18,8 @@ pub enum Into {
     River(u32),
     /// Beyond the map.
     Rim,
+    /// Over the seam of a seamless map, where it goes on as the river of that number.
+    Seam(u32),
     /// In the ground's lowest place, where it stays.
     Sink,
 }
@@ -135,7 +137,7 @@ impl Network<'_> {
         if self.over_seam(mouth) {
             // The river goes on at the other side under another number.
             let next = passed[r].0;
-            let into = if next == NONE { Into::Rim } else { Into::River(next + 1) };
+            let into = if next == NONE { Into::Rim } else { Into::Seam(next + 1) };
             return Some((beyond(grid, mouth).map(|edge| (edge, ground(mouth))), into));
         }
         if self.is_sea(r) {

@@ -22,6 +22,8 @@ mod inflow;
 mod params;
 mod stage;
 mod tables;
+#[cfg(test)]
+mod tests;
 mod waters;
 
 pub use params::RiversParams;

@@ -10,9 +10,9 @@ pub struct RiversParams {
     /// Runoff where no stage has made a layer `runoff` or `rain`.
     #[schemars(range(min = 0.0, max = 20000.0), extend("x-unit" = "mm/yr", "x-effect" = "larger rivers"))]
     pub rain_mm_per_yr: f64,
-    /// A hollow of less area is no lake: it is drained or filled.
+    /// A hollow of less area is no lake: it is drained or filled. Where absent, 1/10000 of the map.
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "km2", "x-effect" = "fewer lakes"))]
-    pub smallest_lake_km2: f64,
+    pub smallest_lake_km2: Option<f64>,
     /// A hollow that is nowhere deeper is no lake.
     #[schemars(range(min = 0.0, max = 1000.0), extend("x-unit" = "m", "x-effect" = "fewer lakes"))]
     pub shallowest_lake_m: f64,
@@ -35,7 +35,7 @@ impl Default for RiversParams {
     fn default() -> Self {
         Self {
             rain_mm_per_yr: 600.0,
-            smallest_lake_km2: 25.0,
+            smallest_lake_km2: None,
             shallowest_lake_m: 3.0,
             least_discharge_m3_s: None,
             bankfull_ratio: 3.0,

@@ -20,6 +20,8 @@ use crate::{
 const YEAR_S: f64 = 31_557_600.0;
 /// Share of the map whose mean runoff is a river, where no discharge is given.
 const RIVER_SHARE: f64 = 1.0 / 4000.0;
+/// Share of the map that a hollow must cover to be a lake, where no area is given.
+const LAKE_SHARE: f64 = 1e-4;
 
 impl RiversParams {
     /// The process.
@@ -90,7 +92,8 @@ impl Rivers {
 
         let surface_m = Drainage::of(grid, &z, &outlet).surface_m;
         let mut lakes = hollows(grid, &z, &surface_m);
-        let smallest = params.smallest_lake_km2 * 1e6 / grid.cell_area_m2();
+        let smallest =
+            params.smallest_lake_km2.map_or(grid.cells() as f64 * LAKE_SHARE, |km2| km2 * 1e6 / grid.cell_area_m2());
         lakes.retain(|lake| lake.cells.len() as f64 >= smallest && lake.depth_m >= params.shallowest_lake_m);
         context.check()?;
         level(grid, &mut z, &outlet, &lakes);

@@ -22,6 +22,7 @@ pub fn rivers(rivers: &[River], bankfull_ratio: f64) -> Table {
         Into::Lake(id) => ("lake", id),
         Into::River(id) => ("river", id),
         Into::Rim => ("rim", 0),
+        Into::Seam(id) => ("rim", id),
         Into::Sink => ("sink", 0),
     };
     Table::new("rivers")

@@ -60,6 +60,12 @@ const CASES: &[Case] = &[
     Case { kind: "hillslope", params: "steps = 3\nduration_kyr = 1e5\n", may_leave_out: &[Layer::Lava] },
     Case { kind: "hillslope", params: "steps = 3\nduration_kyr = 1e5\nmask = 'height > 0'\n", may_leave_out: &[Layer::Lava] },
     case("import", "blend = 'max'\nsmooth = 1.0\nhigh_m = 3000.0\nmask = 'height > 100'\n"),
+    Case { kind: "rivers", params: "", may_leave_out: &[Layer::Lava] },
+    Case {
+        kind: "rivers",
+        params: "mask = 'height > 0'\nlake_loss_mm_per_yr = 900.0\ncarve = 3.0\n",
+        may_leave_out: &[Layer::Lava],
+    },
 ];
 
 impl Case {
