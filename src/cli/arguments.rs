@@ -194,7 +194,7 @@ pub(crate) struct RawExport {
     /// Green of a normal map: up (OpenGL) or down (DirectX) [default: up, for unreal down]
     #[arg(long, value_name = "up|down")]
     pub normal_y: Option<String>,
-    /// Metres between contours (.svg .geojson) [default: a round number that gives about fifteen]
+    /// Metres between contours (.svg .geojson) [default: a round number, about a dozen on land]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub contours: Option<String>,
     /// Replace files that exist

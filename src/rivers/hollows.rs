@@ -2,7 +2,7 @@
 
 use crate::{
     flow::{Drainage, neighbours},
-    grid::Grid,
+    grid::{Grid, map_cells},
 };
 
 /// A connected part of the ground below one spill level.
@@ -53,6 +53,19 @@ pub fn least_fall_m(grid: Grid) -> f64 {
     (1e-5 * grid.cell_m).max(2e-3)
 }
 
+/// Tilts cells without any fall by next to nothing, `tilt_m`, so that plains and levelled ground are drained by branching
+/// rivers: on a true level the flood would run in straight, parallel lines. The tilt is too small to be seen.
+pub fn tilt_plains(grid: Grid, z: &mut [f64], outlets: &[bool], tilt_m: impl Fn(usize) -> f64 + Sync) {
+    let level: &[f64] = z;
+    let mut tilt = vec![0.0; z.len()];
+    map_cells(&mut tilt, grid.width, |x, y| {
+        let i = grid.index(x, y);
+        let drained = outlets[i] || neighbours(grid, i).any(|(j, _)| level[j] < level[i]);
+        if drained { 0.0 } else { tilt_m(i) }
+    });
+    z.iter_mut().zip(tilt).for_each(|(z, tilt)| *z += tilt);
+}
+
 /// Drains or fills every hollow that has no kept bottom, each by what moves less rock. `z` is changed; lakes keep one
 /// bottom each.
 pub fn level(grid: Grid, z: &mut [f64], outlets: &[bool], lakes: &[Hollow]) {
@@ -70,8 +83,13 @@ pub fn level(grid: Grid, z: &mut [f64], outlets: &[bool], lakes: &[Hollow]) {
             breach(&way, z, &hollow, fall);
         }
     }
-    // What is left is filled, with a fall to its outlet. A plain that drains as it is stays a plain.
-    let way = Drainage::of(grid, z, &ends);
+    fill(grid, z, &ends);
+}
+
+/// Fills every hollow that has no end in it, with a fall to its outlet.
+pub fn fill(grid: Grid, z: &mut [f64], ends: &[bool]) {
+    let fall = least_fall_m(grid);
+    let way = Drainage::of(grid, z, ends);
     for &i in &way.order {
         let (i, r) = (i as usize, way.receiver[i as usize] as usize);
         if r != i && z[i] < z[r] {

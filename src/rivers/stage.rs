@@ -4,7 +4,7 @@ use super::{
     RiversParams,
     bed::{self, Beds},
     course::Network,
-    hollows::{hollows, level},
+    hollows::{fill, hollows, least_fall_m, level, tilt_plains},
     inflow::{inflows, open_gates},
     tables,
     waters::{Climate, Waters},
@@ -12,6 +12,7 @@ use super::{
 use crate::{
     flow::{Drainage, outlets},
     grid::Field,
+    noise::Fbm,
     process::{Context, Placement, Process, ProcessError, State, Step},
     world::{Layer, Matter, World},
 };
@@ -22,6 +23,10 @@ const YEAR_S: f64 = 31_557_600.0;
 const RIVER_SHARE: f64 = 1.0 / 4000.0;
 /// Share of the map that a hollow must cover to be a lake, where no area is given.
 const LAKE_SHARE: f64 = 1e-4;
+/// Size of the largest swells of a plain.
+const PLAIN_KM: f64 = 30.0;
+/// Height of its swells: it decides only where nothing else does.
+const TILT_M: f64 = 1e-6;
 
 impl RiversParams {
     /// The process.
@@ -90,6 +95,14 @@ impl Rivers {
         let outlet = open_gates(grid, outlets(&height, sea_m), &inflows(world), &sea);
         let mut z: Vec<f64> = height.data.iter().map(|&h| h as f64).collect();
 
+        // Dry land is higher than the sea, be it by a hair.
+        let shore_m = sea_m + least_fall_m(grid);
+        z.iter_mut().zip(&sea).filter(|(_, sea)| !**sea).for_each(|(z, _)| *z = z.max(shore_m));
+        let plains = Fbm::new(PLAIN_KM * 1e3, 0.5).octaves(context.key.named("plains"), grid.cell_m);
+        tilt_plains(grid, &mut z, &outlet, |i| {
+            let (x, y) = grid.cell_of(i);
+            TILT_M * plains.value(grid.center_m(x, y))
+        });
         let surface_m = Drainage::of(grid, &z, &outlet).surface_m;
         let mut lakes = hollows(grid, &z, &surface_m);
         let smallest =
@@ -134,11 +147,17 @@ impl Rivers {
     }
 
     fn write(&self, found: Found, mask: Option<&Field<f32>>, world: &mut World, context: &Context) {
-        let Found { waters, beds, order, sea } = found;
+        let Found { waters, mut beds, order, sea } = found;
         let grid = world.grid;
-        let network = Network { waters: &waters, beds: &beds, sea_m: world.sea_level_m, order: &order };
-        let rivers = network.rivers();
+        let rivers = Network { waters: &waters, beds: &beds, sea_m: world.sea_level_m, order: &order }.rivers();
         let ratio = self.params.bankfull_ratio;
+        let wet = |i: usize| sea[i] || waters.lake_of[i] > 0;
+        let mut ground_m = beds.ground_m.clone();
+        if bed::widen(grid, &mut ground_m, &rivers, [ratio, self.params.carve], wet) {
+            let ends: Vec<bool> = (0..sea.len()).map(|i| wet(i) || waters.way.is_outlet(i)).collect();
+            fill(grid, &mut ground_m, &ends);
+            beds.ground_m = ground_m;
+        }
         world.set_table(tables::rivers(&rivers, ratio));
         world.set_table(tables::lakes(&waters, grid, &beds.ground_m, &beds.surface_m));
         world.set_table(tables::outlines(&waters, grid, &beds.ground_m, &beds.surface_m));

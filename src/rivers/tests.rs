@@ -151,6 +151,46 @@ fn beds_are_cut_only_as_deep_as_asked() {
 }
 
 #[test]
+fn a_plain_has_branching_rivers_not_parallel_lines() {
+    let grid = Grid::new(96, 96, 96_000.0, Edges::Closed);
+    let mut world = World::new(grid, 0.0);
+    // Level land on the north of a sea.
+    world.set_layer(Layer::Bedrock, Field::from_fn(grid, |_, y| if y > 90 { -50.0 } else { 20.0 }));
+    run(&mut world, fine());
+    keep_the_rules(&world);
+    assert_eq!(pits(&world), 0);
+    let lines = lines(&world);
+    let joined = lines.values().filter(|line| line.into == "river").count();
+    let order = world.layer(Layer::StreamOrder).unwrap().data.iter().fold(0.0f32, |a, &b| a.max(b));
+    assert!(2 * joined > lines.len() && order >= 3.0, "{joined} of {}, order {order}", lines.len());
+    // It stays a plain: the farthest place is raised by a few cm a cell.
+    let top = world.height().range().unwrap().1;
+    assert!(top < 23.0, "{top}");
+}
+
+#[test]
+fn a_river_wider_than_a_cell_has_a_bed_of_its_width() {
+    let grid = Grid::new(120, 60, 1200.0, Edges::Open);
+    let mut world = World::new(grid, -1e3);
+    world
+        .set_layer(Layer::Bedrock, Field::from_fn(grid, |x, y| 100.0 - 0.1 * x as f32 + 0.2 * (y as f32 - 30.0).abs()));
+    world.set_table(Table::new("inflows").number("x_km", "km", vec![0.005]).number("y_km", "km", vec![0.305]).number(
+        "discharge_m3_s",
+        "m3/s",
+        vec![60.0],
+    ));
+    run(&mut world, RiversParams { least_discharge_m3_s: Some(5.0), bankfull_ratio: 1.0, ..fine() });
+    keep_the_rules(&world);
+    assert_eq!(pits(&world), 0);
+    // 7.2·√60 = 56 m wide and 0.27·60^0.39 = 1.33 m deep.
+    let wear = world.layer(Layer::Wear).unwrap();
+    let cut: Vec<f32> = (0..60).map(|y| wear.at(60, y)).collect();
+    let width = cut.iter().filter(|&&m| m > 0.05).count();
+    assert!((4..=7).contains(&width), "{width}");
+    assert!((cut[30] - 1.33).abs() < 0.1 && cut[30] > cut[32], "{cut:?}");
+}
+
+#[test]
 fn worlds_nobody_would_wish_have_the_rivers_they_deserve() {
     let size = 24;
     let grid = Grid::new(size, size, 48_000.0, Edges::Open);

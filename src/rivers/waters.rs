@@ -92,7 +92,8 @@ impl Waters {
         let mut closed = Vec::new();
         for lake in &self.lakes {
             let net: f64 = lake.cells.iter().filter_map(|&i| leaves(i as usize)).sum();
-            if net >= 0.0 {
+            // A puddle of one cell cannot shrink.
+            if net >= 0.0 || lake.cells.len() < 2 {
                 continue;
             }
             let gain = net + climate.loss_m3_s * lake.cells.len() as f64;

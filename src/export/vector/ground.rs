@@ -11,8 +11,8 @@ use crate::{
     world::World,
 };
 
-/// Contours that a map should have.
-const WANTED: f64 = 15.0;
+/// Contours that land should have.
+const WANTED: f64 = 12.0;
 /// Thinner than this a line is not drawn anyway, cells.
 const THIN: f64 = 0.2;
 /// Contours around less are left out, cells.
@@ -41,11 +41,13 @@ impl Ground {
         Self { shift: view.corner_m, range_m, cell_m: height.grid.cell_m, height }
     }
 
-    /// A round number of metres that gives about as many contours as a map should have.
-    pub fn interval_m(&self) -> f64 {
-        let raw = ((self.range_m[1] - self.range_m[0]) / WANTED).max(1e-3);
+    /// A round number of metres that gives the land, or where there is none the sea, as many contours as it should have.
+    pub fn interval_m(&self, sea_m: f64) -> f64 {
+        let [low, high] = self.range_m;
+        let foot = if high > sea_m { low.max(sea_m) } else { low };
+        let raw = (1.4 * (high - foot) / WANTED).max(1e-3);
         let ten = libm::pow(10.0, libm::floor(libm::log10(raw)));
-        [1.0, 2.0, 5.0, 10.0].into_iter().map(|step| step * ten).find(|&step| step >= raw).unwrap_or(raw)
+        [5.0, 2.0, 1.0].into_iter().map(|step| step * ten).find(|&step| step <= raw).unwrap_or(ten)
     }
 
     fn moved(&self, line: Line) -> Line {

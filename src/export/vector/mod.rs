@@ -48,7 +48,7 @@ pub enum VectorFormat {
 pub struct VectorOptions {
     /// The part of the map; all of it if absent.
     pub window: Option<Window>,
-    /// Metres between contours; a round number that gives about fifteen if absent.
+    /// Metres between contours; a round number that gives the land about a dozen if absent.
     pub contours_m: Option<f64>,
     /// The name of the map.
     pub title: String,
@@ -99,7 +99,7 @@ impl Map {
         };
         let view = View { corner_m, extent_m, grid: world.grid };
         let ground = ground::Ground::of(world, &height, &view);
-        let interval_m = options.contours_m.unwrap_or_else(|| ground.interval_m());
+        let interval_m = options.contours_m.unwrap_or_else(|| ground.interval_m(world.sea_level_m));
         Ok(Self {
             corner_m,
             extent_m,

@@ -168,17 +168,22 @@ impl Sheet<'_> {
         let turn = motion.heading_deg;
         if motion.speed_mm_per_yr > 0.0 {
             let (tail, neck, tip) = (0.5 * length, -0.5 * length + 9.0, -0.5 * length);
+            let shape = format!("M-1 {tail:.1}V{neck:.1}H-4L0 {tip:.1}L4 {neck:.1}H1V{tail:.1}Z");
             self.put(&format!(
-                "<path data-plate=\"{}\" transform=\"translate({x:.1} {y:.1}) rotate({turn:.1})\" stroke=\"#ffffff\" \
-                 stroke-width=\"1.4\" paint-order=\"stroke\" d=\"M-1 {tail:.1}L-1 {neck:.1}L-4 {neck:.1}L0 {tip:.1}\
-                 L4 {neck:.1}L1 {neck:.1}L1 {tail:.1}Z\"/>",
+                "<g data-plate=\"{}\" transform=\"translate({x:.1} {y:.1}) rotate({turn:.1})\"><path stroke=\"#ffffff\" \
+                 stroke-width=\"2.4\" stroke-linejoin=\"round\" d=\"{shape}\"/><path d=\"{shape}\"/></g>",
                 motion.plate
             ));
         }
         let below = y + 0.5 * length * libm::cos(turn.to_radians()).abs() + 13.0;
+        self.words([x, below], &format!("{:.0}", motion.speed_mm_per_yr));
+    }
+
+    /// Words on a pale halo, which lies under them as words of its own: not every program orders paint.
+    fn words(&mut self, [x, y]: [f64; 2], words: &str) {
         self.put(&format!(
-            "<text x=\"{x:.1}\" y=\"{below:.1}\" stroke=\"#ffffff\" stroke-width=\"2.4\" paint-order=\"stroke\">{:.0}</text>",
-            motion.speed_mm_per_yr
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" stroke=\"#ffffff\" stroke-opacity=\"0.8\" stroke-width=\"2.4\" \
+             stroke-linejoin=\"round\">{words}</text><text x=\"{x:.1}\" y=\"{y:.1}\">{words}</text>"
         ));
     }
 
@@ -188,11 +193,8 @@ impl Sheet<'_> {
         let write = |sheet: &mut Self, spots: &[Spot], shape: &str| {
             for spot in spots {
                 let [x, y] = sheet.place(spot.at_m);
-                sheet.put(&format!(
-                    "<g transform=\"translate({x:.1} {y:.1})\"><path d=\"{shape}\"/><text x=\"5\" y=\"3\" \
-                     stroke=\"#ffffff\" stroke-opacity=\"0.8\" stroke-width=\"2\" paint-order=\"stroke\">{:.0}</text></g>",
-                    spot.height_m
-                ));
+                sheet.put(&format!("<path transform=\"translate({x:.1} {y:.1})\" d=\"{shape}\"/>"));
+                sheet.words([x + 5.0, y + 3.0], &format!("{:.0}", spot.height_m));
             }
         };
         self.layer("peaks", "Peaks, m", &style, |sheet| write(sheet, &map.peaks, "M0 -3.2L3 2L-3 2Z"));
