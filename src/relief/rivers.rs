@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn a_river_widens_downstream_and_small_pictures_leave_its_head_out() {
-        let world = world((0..61).map(|k| 1.0 + k as f64 * 200.0).collect());
+        let world = world((0..61).map(|k| 1.0 + k as f64 * 5.0).collect());
         let ink = |px: usize| {
             let waters = Waters::of(&world, &Grid::new(px, px, 64_000.0, Edges::Open)).unwrap();
             let column = |x: usize| (0..px).map(|y| waters.pixels[y * px + x][3] as f64 / 255.0).sum::<f64>();

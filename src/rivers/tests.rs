@@ -231,7 +231,7 @@ fn basin() -> World {
     let mut world = World::new(grid, 0.0);
     let height = Field::from_fn(grid, |x, y| {
         let r = ((x as f32 - 40.0).powi(2) + (y as f32 - 40.0).powi(2)).sqrt();
-        let rim = if x == 40 && y < 40 && r > 18.0 && r < 22.0 { -8.0 } else { 0.0 };
+        let rim = if x == 40 && y < 40 && r > 18.0 && r < 30.0 { -8.0 } else { 0.0 };
         200.0 + rim + if r < 20.0 { -100.0 + 5.0 * r } else { -2.0 * (r - 20.0) }
     });
     world.set_layer(Layer::Bedrock, height);

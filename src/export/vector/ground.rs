@@ -117,47 +117,31 @@ impl Ground {
         self.levels(interval_m).flat_map(lines).map(|(level, line)| (level, self.moved(line))).collect()
     }
 
-    /// Summits: the highest within a twelfth of the map around, on land, the highest first.
+    /// Summits: on land, none higher within a twelfth of the map around, the highest first.
     pub fn peaks(&self, sea_m: f64) -> Vec<Spot> {
         const MOST: usize = 24;
         let grid = self.height.grid;
-        let reach = (grid.width.max(grid.height) / 12).max(2);
-        let mut order: Vec<usize> = (0..grid.cells()).filter(|&i| self.height.data[i] as f64 > sea_m).collect();
-        order.sort_by(|&a, &b| self.height.data[b].total_cmp(&self.height.data[a]).then(a.cmp(&b)));
+        let height = |i: usize| self.height.data[i];
         let least = sea_m + 0.25 * (self.range_m[1] - sea_m);
-        let mut peaks: Vec<(usize, usize)> = Vec::new();
-        // From the top down, a place higher than all around it is one that no higher place is near.
-        let mut covered = vec![false; grid.cells()];
-        for i in order {
+        let higher = |i: usize, j: usize| height(j) > height(i) || height(j) == height(i) && j < i;
+        let summit = |i: usize| {
             let (x, y) = grid.cell_of(i);
-            if (self.height.data[i] as f64) < least || peaks.len() == MOST {
-                break;
-            }
-            if !covered[i] {
-                peaks.push((x, y));
-            }
-            // What hangs together with a summit belongs to it, within reach.
-            let near = |&(px, py): &(usize, usize)| px.abs_diff(x).pow(2) + py.abs_diff(y).pow(2) < reach * reach;
-            if peaks.iter().any(near) {
-                for j in y.saturating_sub(1)..=(y + 1).min(grid.height - 1) {
-                    covered[j * grid.width + x.saturating_sub(1)..=j * grid.width + (x + 1).min(grid.width - 1)]
-                        .fill(true);
-                }
-            }
-        }
-        // A summit at the foot of a greater one, just out of its reach, is none.
-        let spots = peaks.into_iter().map(|(x, y)| {
-            let [cx, cy] = grid.center_m(x, y);
-            Spot { at_m: [cx + self.shift[0], cy + self.shift[1]], height_m: self.height.at(x, y) as f64 }
-        });
+            let rows = y.saturating_sub(1)..=(y + 1).min(grid.height - 1);
+            let columns = x.saturating_sub(1)..=(x + 1).min(grid.width - 1);
+            rows.into_iter().all(|j| columns.clone().all(|k| !higher(i, grid.index(k, j))))
+        };
+        let mut summits: Vec<usize> =
+            (0..grid.cells()).filter(|&i| height(i) as f64 > least.max(sea_m) && summit(i)).collect();
+        summits.sort_by(|&a, &b| height(b).total_cmp(&height(a)).then(a.cmp(&b)));
+        let reach_m = grid.extent_m()[0].max(grid.extent_m()[1]) / 12.0;
         let mut kept: Vec<Spot> = Vec::new();
-        for spot in spots {
-            let far = |other: &Spot| {
-                let d = libm::hypot(other.at_m[0] - spot.at_m[0], other.at_m[1] - spot.at_m[1]);
-                d > 0.6 * reach as f64 * self.cell_m
-            };
-            if kept.iter().all(far) {
-                kept.push(spot);
+        for i in summits {
+            let (x, y) = grid.cell_of(i);
+            let [cx, cy] = grid.center_m(x, y);
+            let at_m = [cx + self.shift[0], cy + self.shift[1]];
+            let far = |other: &Spot| libm::hypot(other.at_m[0] - at_m[0], other.at_m[1] - at_m[1]) > reach_m;
+            if kept.len() < MOST && kept.iter().all(far) {
+                kept.push(Spot { at_m, height_m: height(i) as f64 });
             }
         }
         kept

@@ -50,15 +50,15 @@ fn land_contours_and_rivers_are_where_they_are() {
 
 #[test]
 fn a_window_cuts_everything_and_closes_polygons() {
-    let map = map(Some(Window { x_m: 50_000.0, y_m: 50_000.0, size_m: 20_000.0 }));
+    let map = map(Some(Window { x_m: 50_000.0, y_m: 50_000.0, size_m: 25_000.0 }));
     let quarter = map.land.iter().map(|p| shapes::area(&p.outer)).sum::<f64>();
-    // The window lies wholly on the island but for its far corner: 20² less what lies beyond 30 km from the middle.
-    assert!(quarter < 4e8 && quarter > 0.97 * 4e8, "{quarter}");
-    let inside = |p: &[f64; 2]| p.iter().all(|&v| (50_000.0..=70_000.0).contains(&v));
+    // The island's quarter of 30 km without what lies beyond 25 km: π/4·30² − 2·∫ √(30² − x²) from 25 to 30 = 594.3 km².
+    assert!((quarter / 594.3e6 - 1.0).abs() < 5e-3, "{quarter}");
+    let inside = |p: &[f64; 2]| p.iter().all(|&v| (50_000.0..=75_000.0).contains(&v));
     let lines = map.rivers.iter().map(|reach| &reach.line).chain(map.contours.iter().map(|(_, line)| line));
     assert!(lines.flatten().all(inside));
     let river: f64 = map.rivers.iter().map(|reach| shapes::length(&reach.line)).sum();
-    assert!((river - 20_000.0).abs() < 1e-6, "{river}");
+    assert!((river - 25_000.0).abs() < 1e-6, "{river}");
 }
 
 #[test]
