@@ -7,6 +7,7 @@
 //! | `region` | rectangles and discs with soft edges |
 //! | `zoom` | the stage: which window, and what becomes of layers, tables and books |
 //! | `window` | resampling of layers to a window, and detail below the old cells |
+//! | `tables` | places and lines that go along with a window |
 //! | `inflow` | the rivers that come in over a window's rim |
 //! | `import` | the stage: its parameters, and how a file becomes the heights of a map |
 //! | `read` | the formats, one file each: a header first, heights only when it is sound |
@@ -24,6 +25,7 @@ mod inflow;
 mod read;
 mod region;
 mod sidecar;
+mod tables;
 #[cfg(test)]
 mod tests;
 mod unstep;

@@ -9,12 +9,13 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     inflow::{self, Routed},
+    tables,
     window::{self, Window},
 };
 use crate::{
     grid::{Edges, Field, Grid, sum_f64},
     process::{Context, Placement, Process, ProcessError, State, Step},
-    world::{Layer, Matter, Table, Values, World},
+    world::{Layer, Matter, Table, World},
 };
 
 /// The table of all windows the world was cut to.
@@ -211,7 +212,7 @@ impl Process for Zoom {
         let parent_cell_m = world.grid.cell_m;
         world.regrid(window.grid, |layer, field| window::layer(layer, field, &window));
         lay_ground(world, &new_height);
-        move_tables(world, &window);
+        tables::carry(world, &window);
         world.set_inflows(&inflows);
         note_window(world, at_first_m, parent_cell_m);
         books.close(world, context);
@@ -286,55 +287,6 @@ fn note_window(world: &mut World, at_first_m: [f64; 2], parent_cell_m: f64) {
         table = table.number(name, unit, values);
     }
     world.set_table(table);
-}
-
-/// Tables whose rows reach off any map: plates are larger than windows.
-const UNCUT: [&str; 2] = ["plates", "plate_outlines"];
-/// Columns that say to which line or ring a row belongs.
-const LINES: [&str; 2] = ["river", "lake"];
-
-/// Moves places in all tables to the window's frame. Points outside are left out; of lines and rings those that never come
-/// in.
-fn move_tables(world: &mut World, window: &Window) {
-    let tables: Vec<Table> = world.tables().cloned().collect();
-    for mut table in tables {
-        let (Some(x_km), Some(y_km)) = (table.numbers("x_km"), table.numbers("y_km")) else { continue };
-        let [width_m, height_m] = window.grid.extent_m();
-        let moved =
-            |km: &[f64], axis: usize| -> Vec<f64> { km.iter().map(|km| km - window.corner_m[axis] * 1e-3).collect() };
-        let (x_km, y_km) = (moved(x_km, 0), moved(y_km, 1));
-        let inside = |i: usize| {
-            let [x_m, y_m] = [x_km[i] * 1e3, y_km[i] * 1e3];
-            (0.0..=width_m).contains(&x_m) && (0.0..=height_m).contains(&y_m)
-        };
-        let keep: Vec<bool> = if UNCUT.contains(&table.name.as_str()) {
-            vec![true; table.rows()]
-        } else if let Some(ids) = LINES.iter().find_map(|name| table.numbers(name)) {
-            let mut there: Vec<u64> = (0..ids.len()).filter(|&i| inside(i)).map(|i| ids[i].to_bits()).collect();
-            there.sort_unstable();
-            ids.iter().map(|id| there.binary_search(&id.to_bits()).is_ok()).collect()
-        } else {
-            (0..table.rows()).map(inside).collect()
-        };
-        for column in &mut table.columns {
-            match &mut column.values {
-                Values::Number(values) => {
-                    match column.name.as_str() {
-                        "x_km" => values.clone_from(&x_km),
-                        "y_km" => values.clone_from(&y_km),
-                        _ => {}
-                    }
-                    let mut keep = keep.iter();
-                    values.retain(|_| keep.next() == Some(&true));
-                }
-                Values::Text(values) => {
-                    let mut keep = keep.iter();
-                    values.retain(|_| keep.next() == Some(&true));
-                }
-            }
-        }
-        world.set_table(table);
-    }
 }
 
 impl Window {

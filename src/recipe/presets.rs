@@ -37,6 +37,10 @@ const ALL: &[Preset] = presets! {
     "rmp-graph"
     "erode-my-map"
     "rain-shadow"
+    "steady-state"
+    "knickpoint"
+    "hard-band"
+    "continent-to-valley"
 };
 
 /// Every preset.

@@ -23,7 +23,7 @@ fn a_folder_holds_the_world_and_its_numbers() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     names.sort();
-    assert_eq!(names, ["height.png", "manifest.json", "relief.png", "world.zarr"]);
+    assert_eq!(names, ["height.png", "manifest.json", "relief.png", "series.csv", "world.zarr"]);
     assert_eq!(std::fs::read_dir(place.path("deep")).unwrap().count(), 1, "something stayed beside");
 
     let manifest = manifest(&place, "deep/world");

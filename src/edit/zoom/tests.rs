@@ -135,24 +135,6 @@ fn a_window_of_a_window_keeps_its_place_and_its_rivers() {
 }
 
 #[test]
-fn tables_move_along() {
-    let mut parent = land(50);
-    let points =
-        |name: &str| Table::new(name).number("x_km", "km", vec![10.0, 90.0, 130.0]).number("y_km", "km", vec![60.0; 3]);
-    parent.set_table(points("vents").text("name", ["a", "b", "c"].map(str::to_owned).to_vec()));
-    parent.set_table(points("plates"));
-    parent.set_table(points("rivers").number("river", "1", vec![1.0, 2.0, 2.0]));
-    let world = zoomed(&parent, at(&[80.0, 50.0, 40.0])).unwrap();
-    let table = |name: &str| world.table(name).unwrap().numbers("x_km").unwrap().to_vec();
-    assert_eq!(
-        (table("vents"), table("plates"), table("rivers")),
-        (vec![10.0], vec![-70.0, 10.0, 50.0], vec![10.0, 50.0])
-    );
-    assert_eq!(world.table("vents").unwrap().words("name").unwrap(), ["b"]);
-    assert_eq!(world.table("vents").unwrap().numbers("y_km").unwrap(), [10.0]);
-}
-
-#[test]
 fn windows_are_found() {
     let parent = land(100);
     let place = |around| {

@@ -6,10 +6,12 @@
 
 mod azgaar;
 mod godot;
+mod mend;
 mod unity;
 mod unreal;
 
 pub use azgaar::{gray as azgaar_gray, scale as azgaar_scale};
+pub use mend::{Part, zooms};
 pub use unreal::reads_as_tiles;
 
 use serde_json::Value;

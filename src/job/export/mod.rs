@@ -16,7 +16,7 @@ use std::path::PathBuf;
 
 use crate::export::{
     self, Green,
-    engine::{COARSE_M, Engine},
+    engine::{COARSE_M, Engine, Part, zooms},
     raster::Window,
 };
 
@@ -118,17 +118,28 @@ fn notes(order: &Order, place: &place::Place, drawing: &Drawing, world: &crate::
     let mut notes = Vec::new();
     let spacing_m = place.lattice.spacing_m;
     let playable = order.request.engine.is_some_and(|engine| engine != Engine::Azgaar);
+    let cell_m = world.grid.cell_m;
     if playable && spacing_m > COARSE_M {
         notes.push(format!(
             "{} between vertices is coarse for a player on foot (1 to 10 m are usual); cut a part with --window X_KM,Y_KM,SIZE_KM",
             metres(spacing_m)
         ));
     }
-    if spacing_m < world.grid.cell_m * 0.67 {
+    if playable && cell_m > COARSE_M {
+        let lattice = &place.lattice;
+        let side_m = lattice.spacing_m * lattice.width.max(2).saturating_sub(1) as f64;
+        let part = Part { middle_m: lattice.corner_m.map(|m| m + 0.5 * side_m), side_m };
+        notes.push(format!(
+            "the world's cells are {}; to have land as fine as a player sees it, add to the end of the recipe:{}",
+            metres(cell_m),
+            zooms(world.grid.extent_m(), lattice.width, part)
+        ));
+    }
+    if spacing_m < cell_m * 0.67 {
         notes.push(format!(
             "samples are {} apart, the world's cells {}: a smooth surface lies between, without new detail",
             metres(spacing_m),
-            metres(world.grid.cell_m)
+            metres(cell_m)
         ));
     }
     if drawing.outside > 0.0 {

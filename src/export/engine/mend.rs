@@ -1,0 +1,63 @@
+//! What to add to a recipe so that its world is fine enough for an engine: stages that zoom into the part wanted.
+
+/// Distance between vertices that a player's feet don't mind, m.
+const FINE_M: f64 = 5.0;
+/// How many times smaller the window of one zoom may be: streams between two zooms shape what lies between.
+const MOST_AT_ONCE: f64 = 20.0;
+
+/// A square part of a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// Middle, m.
+    pub middle_m: [f64; 2],
+    /// Side, m.
+    pub side_m: f64,
+}
+
+/// Stages, in TOML, that go from a map of this extent to a part of it which `vertices` a side cover finely.
+/// `wanted` is the part if it is fine enough by itself.
+pub fn zooms(extent_m: [f64; 2], vertices: usize, wanted: Part) -> String {
+    let fine_m = (vertices.max(2) - 1) as f64 * FINE_M;
+    let shorter_m = extent_m[0].min(extent_m[1]);
+    let longer_m = extent_m[0].max(extent_m[1]);
+    let last_m = wanted.side_m.min(fine_m).min(shorter_m);
+    let steps = (libm::log(longer_m / last_m) / libm::log(MOST_AT_ONCE) - 1e-9).ceil().max(1.0) as i32;
+    let mut text = String::new();
+    let (mut corner_m, mut now_m) = ([0.0, 0.0], extent_m);
+    for step in 1..=steps {
+        let share = step as f64 / steps as f64;
+        let side_m = (longer_m * libm::pow(last_m / longer_m, share)).min(now_m[0].min(now_m[1]));
+        let place = |axis: usize| {
+            let from_m = wanted.middle_m[axis] - corner_m[axis] - 0.5 * side_m;
+            from_m.clamp(0.0, now_m[axis] - side_m)
+        };
+        // Down to whole metres, so that nothing is rounded off the map.
+        let [x_m, y_m, whole_m] = [place(0), place(1), side_m].map(f64::floor);
+        let [x_km, y_km, side_km] = [x_m, y_m, whole_m].map(|m| m * 1e-3);
+        text += &format!("\n  [[stage]]\n  kind = \"zoom\"\n  window_km = [{x_km}, {y_km}, {side_km}]");
+        corner_m = [corner_m[0] + x_m, corner_m[1] + y_m];
+        now_m = [whole_m; 2];
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_are_nested_and_end_fine() {
+        let whole = Part { middle_m: [500e3, 500e3], side_m: 1000e3 };
+        let text = zooms([1000e3, 1000e3], 1009, whole);
+        let sides: Vec<&str> = text.lines().filter(|line| line.contains("window_km")).collect();
+        assert_eq!(
+            sides,
+            ["  window_km = [464.501, 464.501, 70.992]", "  window_km = [32.976, 32.976, 5.04]"],
+            "{text}"
+        );
+        // A part near the corner stays on the map.
+        let corner = Part { middle_m: [100.0, 100.0], side_m: 2e3 };
+        let text = zooms([100e3, 100e3], 1009, corner);
+        assert!(text.contains("[0, 0, ") && text.ends_with("2]"), "{text}");
+    }
+}
