@@ -17,7 +17,8 @@ const NAMES: [&str; 3] = [RIVER, "order", "into_id"];
 pub(super) fn carry(world: &mut World, window: &Window) {
     let tables: Vec<Table> = world.tables().cloned().collect();
     for mut table in tables {
-        let moved = ["x_km", "y_km"].iter().zip(window.corner_m).all(|(name, corner_m)| shift(&mut table, name, corner_m));
+        let moved =
+            ["x_km", "y_km"].iter().zip(window.corner_m).all(|(name, corner_m)| shift(&mut table, name, corner_m));
         if !moved {
             continue;
         }
@@ -45,7 +46,8 @@ fn kept(table: Table, window: &Window) -> Table {
     let inside: Vec<bool> = places(&table).into_iter().map(|at_m| share_within([at_m; 2], window).is_some()).collect();
     let keep: Vec<bool> = match table.numbers(LAKE) {
         Some(ids) => {
-            let mut there: Vec<u64> = ids.iter().zip(&inside).filter(|(_, is)| **is).map(|(id, _)| id.to_bits()).collect();
+            let mut there: Vec<u64> =
+                ids.iter().zip(&inside).filter(|(_, is)| **is).map(|(id, _)| id.to_bits()).collect();
             there.sort_unstable();
             ids.iter().map(|id| there.binary_search(&id.to_bits()).is_ok()).collect()
         }

@@ -19,7 +19,11 @@ fn files_are_named_and_notes_go_elsewhere() {
     let said = place.run(&["export", "w", "u.png", "--engine", "unreal"]);
     assert_eq!(said.code, 0, "{}", said.err);
     assert_eq!(said.out, "u.png\nu_sand.png\nu_grass.png\nu_rock.png\nu_snow.png\nu.png.json\n");
-    assert!(said.err.lines().all(|line| line.starts_with("note: ") || line.starts_with("  ")) && !said.err.is_empty(), "{}", said.err);
+    assert!(
+        said.err.lines().all(|line| line.starts_with("note: ") || line.starts_with("  ")) && !said.err.is_empty(),
+        "{}",
+        said.err
+    );
 }
 
 #[test]

@@ -32,15 +32,15 @@ pub(super) struct BaseLevel {
 }
 
 impl BaseLevel {
-    /// Finds the outlets of a surface.
-    pub(super) fn find(&mut self, grid: Grid, height_m: &[f64], sea_level_m: f64, rim: Rim) {
+    /// Finds the outlets of a surface. On the rim's `gates`, in ascending order, rivers come in and no water leaves.
+    pub(super) fn find(&mut self, grid: Grid, height_m: &[f64], sea_level_m: f64, (rim, gates): (Rim, &[usize])) {
         self.outlet.clear();
         self.outlet.extend(height_m.iter().map(|&z| z < sea_level_m));
         self.sea = self.outlet.contains(&true);
         self.edge.clear();
         if grid.edges == Edges::Open {
             let compass = Compass::new(grid);
-            for i in rim_cells(grid) {
+            for i in rim_cells(grid).filter(|i| gates.binary_search(i).is_err()) {
                 match rim {
                     Rim::Fixed => self.edge.push((i, Base::Fixed)),
                     Rim::Free if self.outlet[i] => {}

@@ -59,10 +59,16 @@ pub struct Forcing<'a> {
     pub sea_level_m: f64,
     /// Uplift, mm/yr.
     pub uplift_mm_per_yr: Option<&'a [f32]>,
+    /// By what uplift is multiplied during the step.
+    pub uplift_factor: f64,
     /// Rain, mm/yr, where there is a map of it.
     pub rain_mm_per_yr: Option<&'a [f32]>,
     /// Rain elsewhere, mm/yr.
     pub uniform_rain_mm_per_yr: f64,
+    /// Cells where rivers come in, and their water, m² of catchment under a metre of rain a year.
+    pub inflows: &'a [(usize, f64)],
+    /// Cells of the rim about them, in ascending order; no water leaves there.
+    pub gates: &'a [usize],
     /// Share of the erodibility that each cell has.
     pub ease: Option<&'a [f32]>,
 }
@@ -137,7 +143,7 @@ impl Carver {
 
     /// Ways over the ground and the sea.
     fn route(&mut self, law: &Law, forcing: &Forcing, height_m: &[f64]) {
-        self.base.find(self.grid(), height_m, forcing.sea_level_m, law.rim);
+        self.base.find(self.grid(), height_m, forcing.sea_level_m, (law.rim, forcing.gates));
         let sea_m = forcing.sea_level_m;
         self.surface_m.par_iter_mut().zip(height_m).for_each(|(s, &z)| *s = z.max(sea_m));
         self.router.route(&self.surface_m, &self.base.outlet);
@@ -152,6 +158,9 @@ impl Carver {
             }
             None => self.water_m2.fill(forcing.uniform_rain_mm_per_yr * cell_m2),
         }
+        for &(i, water_m2) in forcing.inflows {
+            self.water_m2[i] += water_m2;
+        }
         self.router.descend(&mut self.water_m2, |_, water| *water);
     }
 
@@ -161,7 +170,7 @@ impl Carver {
             self.raised_m.copy_from_slice(height_m);
             return 0.0;
         };
-        let (way, per_rate) = (self.router.ways(), years * 1e-3);
+        let (way, per_rate) = (self.router.ways(), years * 1e-3 * forcing.uplift_factor);
         let cells = self.raised_m.par_iter_mut().zip(height_m).zip(uplift).zip(way);
         cells.for_each(|(((raised, &z), &rate), &way)| {
             let stays = way == ROOT && !law.lifts_base;

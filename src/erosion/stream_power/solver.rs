@@ -3,7 +3,7 @@
 use crate::{
     erosion::column::{Change, Column},
     grid::Field,
-    world::{Layer, World},
+    world::{Inflow, Layer, World},
 };
 
 use super::{
@@ -54,20 +54,26 @@ impl Solver {
     /// `uplift`, `rain` and `hardness` where they are present, and the sea level.
     pub fn advance(&mut self, world: &mut World, span_yr: f64, stage: &str) {
         let steps = (span_yr / self.step_yr - 1e-9).ceil().max(1.0);
-        for _ in 0..steps as usize {
-            self.step(world, span_yr / steps, stage);
+        let step_yr = span_yr / steps;
+        for step in 0..steps as usize {
+            let from_yr = world.time_yr + step as f64 * step_yr;
+            self.step(world, from_yr, step_yr, stage);
         }
     }
 
-    fn step(&mut self, world: &mut World, years: f64, stage: &str) {
+    fn step(&mut self, world: &mut World, from_yr: f64, years: f64, stage: &str) {
         self.column.read(world, &mut self.height_m);
         let ease = self.ease(world);
+        let (inflows, gates) = (self.inflows(world), world.inflow_gates());
         let layer = |layer: Layer| world.layer(layer).map(|field| field.data.as_slice());
         let forcing = Forcing {
             sea_level_m: world.sea_level_m,
             uplift_mm_per_yr: layer(Layer::Uplift),
+            uplift_factor: world.uplift_factor(from_yr, from_yr + years),
             rain_mm_per_yr: layer(Layer::Rain),
             uniform_rain_mm_per_yr: self.uniform_rain_mm_per_yr,
+            inflows: &inflows,
+            gates: &gates,
             ease: ease.as_ref().map(|field| field.data.as_slice()),
         };
         let moved = self.carver.step(&self.law, &forcing, &mut self.height_m, years);
@@ -79,6 +85,18 @@ impl Solver {
             left_m3: moved.left_m * cell_m2,
         };
         self.column.write(world, &change, stage);
+    }
+
+    /// Where rivers come in, with their water as catchment under a metre of rain a year.
+    fn inflows(&self, world: &World) -> Vec<(usize, f64)> {
+        /// A Julian year, s.
+        const YEAR_S: f64 = 365.25 * 86_400.0;
+        let rained = world.layer(Layer::Rain).is_some();
+        let water_m2 = |inflow: &Inflow| match rained {
+            true => inflow.discharge_m3_s * YEAR_S,
+            false => inflow.area_m2 * self.uniform_rain_mm_per_yr * 1e-3,
+        };
+        world.inflows().iter().map(|inflow| (inflow.cell, water_m2(inflow))).collect()
     }
 
     /// What scales the rates: softness and mask, where there is either.
