@@ -244,3 +244,81 @@ impl Sink for ProfileSink {
         self.notes.add(moment, &[], rows)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Edges, Field, Grid};
+
+    /// A ramp that streams lower by a millimetre a year.
+    fn world(years: u64) -> World {
+        let grid = Grid::new(24, 24, 24e3, Edges::Open);
+        let mut world = World::new(grid, 0.0);
+        world.time_yr = years as f64;
+        let worn_m = years as f32 * 1e-3;
+        world.set_layer(Layer::Bedrock, Field::from_fn(grid, |x, y| 100.0 + 5.0 * x as f32 + 0.3 * y as f32 - worn_m));
+        world.set_layer(Layer::Wear, Field::filled(grid, worn_m));
+        world
+    }
+
+    fn moment(step: u64) -> Moment<'static> {
+        Moment { stage: 1, stages: 2, label: "rivers", step, done: step as f64 / 40.0, time_yr: 1000.0 * step as f64 }
+    }
+
+    /// Shows the steps to both sinks and lets them write, if they are to.
+    fn look_on(beside: &Path, steps: std::ops::RangeInclusive<u64>, out: Option<&Path>) {
+        let from = steps.start().checked_sub(1).filter(|&step| step > 0).map(|step| (1, step));
+        let mut series = SeriesSink::begin(beside, from).unwrap();
+        let mut profiles = ProfileSink::begin(beside, from, false).unwrap();
+        for step in steps {
+            for sink in [&mut series as &mut dyn Sink, &mut profiles] {
+                if sink.glances(&moment(step)) {
+                    sink.take(&world(1000 * step), &moment(step)).unwrap();
+                }
+            }
+        }
+        if let Some(out) = out {
+            assert!(series.finish(out).unwrap() && profiles.finish(out).unwrap());
+        }
+    }
+
+    #[test]
+    fn a_resumed_run_writes_what_an_unbroken_one_does() {
+        let [whole, broken] = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+        look_on(whole.path(), 1..=40, Some(whole.path()));
+        // Stopped at step 23, with a checkpoint from step 17; the last note cut short.
+        look_on(broken.path(), 1..=23, None);
+        let notes = broken.path().join("series.notes");
+        let text = fs::read_to_string(&notes).unwrap();
+        fs::write(&notes, &text[..text.len() - 9]).unwrap();
+        look_on(broken.path(), 18..=40, Some(broken.path()));
+        let read = |folder: &Path, file: &str| fs::read_to_string(folder.join(file)).unwrap();
+        for file in [SERIES, PROFILES] {
+            assert_eq!(read(whole.path(), file), read(broken.path(), file), "{file}");
+        }
+        let series = read(whole.path(), SERIES);
+        let rows: Vec<&str> = series.lines().collect();
+        assert_eq!((rows.len(), rows[0]), (41, SERIES_HEAD));
+        // The land's mean is 100 + 57.5 + 3.45 m less two metres; a millimetre a year leaves 576 km2.
+        assert_eq!(rows[2], "2000.000,rivers,158.950,121.900,1.000000,576000.0,1.000000");
+        let profiles = read(whole.path(), PROFILES);
+        let times: std::collections::BTreeSet<&str> =
+            profiles.lines().skip(1).filter_map(|row| row.split(',').next()).collect();
+        assert_eq!(times.len(), 10, "{times:?}");
+    }
+
+    #[test]
+    fn long_stages_have_no_more_rows_than_can_be_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sink = SeriesSink::begin(folder.path(), None).unwrap();
+        let mut rows = 0;
+        for step in 1..=20_000u64 {
+            let moment = Moment { done: step as f64 / 20_000.0, ..moment(step) };
+            if sink.glances(&moment) {
+                sink.take(&World::new(Grid::new(1, 1, 1.0, Edges::Open), 0.0), &moment).unwrap();
+                rows += 1;
+            }
+        }
+        assert_eq!(rows, 500);
+    }
+}

@@ -21,6 +21,33 @@ fn with(set: &[&str]) -> Result<Plan, RecipeError> {
 }
 
 #[test]
+fn a_zoom_is_refused_where_there_is_nothing_to_zoom_into() {
+    let plan = |stages: &str| {
+        let text = format!("[world]\nsize = 64\nextent_km = 64\n{stages}");
+        let source = Source { name: "t".into(), file: "t.toml".into(), folder: "".into(), text };
+        Plan::new(&source, &Overrides::default())
+    };
+    let line = |stages: &str| plan(stages).unwrap_err().to_string();
+    let ground = "[[stage]]\nkind = \"fbm\"\n";
+    let zoom = "[[stage]]\nkind = \"zoom\"\n";
+    assert!(line(zoom).contains("needs the layer 'bedrock', which no earlier stage makes"), "{}", line(zoom));
+    let off = line(&format!("{ground}{zoom}window_km = [40, 40, 30]\n"));
+    assert!(
+        off.starts_with("t.toml:6: stage 'zoom': the window (30 x 30 km from 40, 40) reaches off the map"),
+        "{off}"
+    );
+    let mask = line(&format!("{ground}{zoom}mask = \"slope > 3\"\n"));
+    assert!(mask.contains("a zoom takes no 'mask'"), "{mask}");
+    let long = line(&format!("{ground}{zoom}window_km = [1, 2]\n"));
+    assert!(long.contains("t.toml:8") && long.contains("window_km"), "{long}");
+    // The second window is judged on the first one's map.
+    let both = format!("{ground}{zoom}window_km = [10, 10, 16]\n{zoom}window_km = [4, 4, 8]\n");
+    assert_eq!(plan(&both).unwrap().grids()[2].cell_m, 125.0);
+    let second = line(&format!("{ground}{zoom}window_km = [10, 10, 16]\n{zoom}window_km = [10, 10, 16]\n"));
+    assert!(second.contains("stage 'zoom#2'") && second.contains("which is 16 x 16 km"), "{second}");
+}
+
+#[test]
 fn every_mistake_has_its_line() {
     let probe = "[[stage]]\nkind = \"probe\"\n";
     let cases = [

@@ -408,6 +408,33 @@ mod tests {
     }
 
     #[test]
+    fn a_run_goes_on_across_a_zoom() {
+        let text = "[world]\nsize = 32\n[[stage]]\nkind = \"fbm\"\n[[stage]]\nkind = \"drip\"\ncount = 2\n\
+                    [[stage]]\nkind = \"zoom\"\nsize_km = 400\nsize = 48\n[[stage]]\nkind = \"drip\"\ncount = 3\n";
+        let (plan, cancel) = (plan(text), AtomicBool::new(false));
+        let whole = Timeline::new(&plan, &cancel).run(&mut [], &mut |_| ()).unwrap();
+        assert_eq!((whole.grid.width, whole.grid.extent_m()), (48, [400e3, 400e3]));
+        assert_eq!(plan.grids().iter().map(|grid| grid.width).collect::<Vec<_>>(), [32, 32, 48, 48]);
+        for (_, _, account) in whole.ledger.accounts() {
+            assert!(account.residual_share() < 1e-6, "{account:?}");
+        }
+        for (stage, step) in [(1, 1), (2, 0), (2, 1), (3, 0), (3, 1), (3, 2)] {
+            let folder = tempfile::tempdir().unwrap();
+            let mut checkpoints = Checkpoints::new(folder.path(), &plan, std::time::Duration::MAX);
+            let stopped = Timeline::new(&plan, &cancel).keeping(&mut checkpoints).run(&mut [], &mut |m| {
+                cancel.fetch_or((m.stage, m.step) == (stage, step), Ordering::Relaxed);
+            });
+            assert!(matches!(stopped, Err(TimelineError::Cancelled)), "{stage} {step}");
+            cancel.store(false, Ordering::Relaxed);
+            let from = checkpoints.latest().unwrap();
+            assert!(
+                Timeline::new(&plan, &cancel).from(from).run(&mut [], &mut |_| ()).unwrap() == whole,
+                "{stage} {step}"
+            );
+        }
+    }
+
+    #[test]
     fn a_damaged_checkpoint_gives_way_to_the_one_before() {
         let (plan, cancel) = (plan(TEXT), AtomicBool::new(false));
         let folder = tempfile::tempdir().unwrap();

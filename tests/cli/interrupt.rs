@@ -123,7 +123,8 @@ fn killed_at_any_moment_it_ends_at_the_same_bits() {
     let hashes = |place: &Place, world: &str| {
         let text = std::fs::read_to_string(place.path(world).join("manifest.json")).unwrap();
         let manifest: serde_json::Value = serde_json::from_str(&text).unwrap();
-        (manifest["layers"].clone(), manifest["ledger"].clone(), manifest["time_yr"].clone())
+        let series = std::fs::read_to_string(place.path(world).join("series.csv")).unwrap();
+        (manifest["layers"].clone(), manifest["ledger"].clone(), manifest["time_yr"].clone(), series)
     };
     let place = Place::new();
     let began = std::time::Instant::now();
