@@ -43,10 +43,9 @@ pub fn main_stems(world: &World, most: usize) -> Vec<Vec<StemPoint>> {
         if donor[r].is_none_or(|other| area_m2[i] > area_m2[other]) {
             donor[r] = Some(i);
         }
-        if d.is_outlet(r) {
-            mouths.push(i);
-        }
     }
+    // Of the streams that end in one cell the largest is its river.
+    mouths.extend((0..d.len()).filter(|&i| d.is_outlet(i)).filter_map(|i| donor[i]));
     // The largest first; of equals the one further north-west.
     mouths.sort_by(|&a, &b| area_m2[b].total_cmp(&area_m2[a]).then(a.cmp(&b)));
     let stem = |mouth: usize| -> Vec<StemPoint> {
