@@ -58,7 +58,11 @@ const CASES: &[Case] = &[
         may_leave_out: &[Layer::Lava],
     },
     Case { kind: "hillslope", params: "steps = 3\nduration_kyr = 1e5\n", may_leave_out: &[Layer::Lava] },
-    Case { kind: "hillslope", params: "steps = 3\nduration_kyr = 1e5\nmask = 'height > 0'\n", may_leave_out: &[Layer::Lava] },
+    Case {
+        kind: "hillslope",
+        params: "steps = 3\nduration_kyr = 1e5\nmask = 'height > 0'\n",
+        may_leave_out: &[Layer::Lava],
+    },
     case("uplift", "mm_per_yr = 0.7\n"),
     case(
         "uplift",

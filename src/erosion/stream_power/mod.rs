@@ -156,11 +156,7 @@ impl Process for Stage {
     }
 
     fn follow(&mut self, world: &mut World, context: &Context, span_yr: f64) -> Result<(), ProcessError> {
-        let steps = (span_yr * 1e-3 / self.params.step_kyr - 1e-9).ceil().max(1.0);
-        let solver = self.solver(world)?;
-        for _ in 0..steps as u64 {
-            solver.advance(world, span_yr / steps, context.stage);
-        }
+        self.solver(world)?.advance(world, span_yr, context.stage);
         Ok(())
     }
 
