@@ -26,8 +26,8 @@ use crate::erosion::diffusion::diffuse;
 const REFERENCE_RAIN_MM_PER_YR: f64 = 1000.0;
 /// Rounds after which deposition has to have settled.
 const MOST_ROUNDS: usize = 30;
-/// Change of height in a round below which it has, m.
-const SETTLED_M: f64 = 1e-3;
+/// Change of height in a round below which it has, m: far less than what a step's length leaves open.
+const SETTLED_M: f64 = 1e-2;
 
 /// Constants of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,6 +96,8 @@ pub struct Carver {
     surface_m: Vec<f64>,
     /// Sediment on its way; where it ends, what was laid down.
     load_m: Vec<f64>,
+    /// What rivers laid down in the last step, m/yr: the first guess of the next; empty without deposition.
+    laid_m_per_yr: Vec<f32>,
     coast: Coast,
 }
 
@@ -111,6 +113,7 @@ impl Carver {
             raised_m: zeros(),
             surface_m: zeros(),
             load_m: zeros(),
+            laid_m_per_yr: Vec::new(),
             coast: Coast::default(),
         }
     }
@@ -118,6 +121,16 @@ impl Carver {
     /// The routing of the last step.
     pub fn router(&self) -> &Router {
         &self.router
+    }
+
+    /// What rivers laid down in the last step, m/yr; the next one begins with it.
+    pub fn laid_m_per_yr(&self) -> &[f32] {
+        &self.laid_m_per_yr
+    }
+
+    /// Takes up what rivers laid down in the last step of a saved run, m/yr.
+    pub fn remember_laid(&mut self, laid_m_per_yr: Vec<f32>) {
+        self.laid_m_per_yr = laid_m_per_yr;
     }
 
     /// Ground of the last step after uplift alone, m.
@@ -274,6 +287,9 @@ impl Carver {
     /// stay (Yuan and others 2019).
     fn erode_and_deposit(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64], years: f64) {
         let mut laid = vec![0.0; height_m.len()];
+        for (laid, &rate) in laid.iter_mut().zip(&self.laid_m_per_yr) {
+            *laid = f64::from(rate) * years;
+        }
         let mut cells = vec![1.0; height_m.len()];
         self.router.descend(&mut cells, |_, count| *count);
         height_m.copy_from_slice(&self.raised_m);
@@ -305,6 +321,8 @@ impl Carver {
                 *laid = if dry { (law.deposition / cells[i]).min(1.0) * load[i].max(0.0) } else { 0.0 };
             });
         }
+        self.laid_m_per_yr.clear();
+        self.laid_m_per_yr.extend(laid.iter().map(|laid| (laid / years) as f32));
     }
 
     /// Carries what was eroded down the network. Afterwards `load_m` is, at an outlet, all that came; under a lake, what

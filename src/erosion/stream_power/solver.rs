@@ -39,7 +39,10 @@ impl Solver {
     /// What is to be saved beside the world: the part of heights that its layers cannot hold, and the mask.
     pub fn save(&self) -> Vec<(String, Field<f32>)> {
         let mask = self.mask.iter().map(|mask| ("mask".to_owned(), mask.clone()));
-        std::iter::once(("rest".to_owned(), self.column.rest().clone())).chain(mask).collect()
+        let (rest, laid) = (self.column.rest(), self.carver.laid_m_per_yr());
+        let laid = Field { grid: rest.grid, data: laid.to_vec() };
+        let laid = (!laid.data.is_empty()).then(|| ("laid".to_owned(), laid));
+        std::iter::once(("rest".to_owned(), rest.clone())).chain(laid).chain(mask).collect()
     }
 
     /// The solver from what was saved; `None` where that is not whole.
@@ -47,11 +50,13 @@ impl Solver {
         let field = |wanted: &str| fields.iter().find(|(name, _)| name == wanted).map(|(_, field)| field.clone());
         let rest = field("rest")?;
         let world = World::new(rest.grid, 0.0);
-        Some(Self { column: Column::restored(rest), ..Self::new(params, &world, field("mask")) })
+        let mut solver = Self { column: Column::restored(rest), ..Self::new(params, &world, field("mask")) };
+        solver.carver.remember_laid(field("laid").map(|laid| laid.data).unwrap_or_default());
+        Some(solver)
     }
 
     /// Goes on by `span_yr`, in equal steps of at most the one asked for, and books under `stage`. Reads the layers
-    /// `uplift`, `rain` and `hardness` where they are present, and the sea level.
+    /// `uplift`, `runoff` (or `rain`) and `hardness` where they are present, and the sea level.
     pub fn advance(&mut self, world: &mut World, span_yr: f64, stage: &str) {
         let steps = (span_yr / self.step_yr - 1e-9).ceil().max(1.0);
         let step_yr = span_yr / steps;
@@ -70,7 +75,7 @@ impl Solver {
             sea_level_m: world.sea_level_m,
             uplift_mm_per_yr: layer(Layer::Uplift),
             uplift_factor: world.uplift_factor(from_yr, from_yr + years),
-            rain_mm_per_yr: layer(Layer::Rain),
+            rain_mm_per_yr: layer(Layer::Runoff).or_else(|| layer(Layer::Rain)),
             uniform_rain_mm_per_yr: self.uniform_rain_mm_per_yr,
             inflows: &inflows,
             gates: &gates,
@@ -91,7 +96,7 @@ impl Solver {
     fn inflows(&self, world: &World) -> Vec<(usize, f64)> {
         /// A Julian year, s.
         const YEAR_S: f64 = 365.25 * 86_400.0;
-        let rained = world.layer(Layer::Rain).is_some();
+        let rained = world.layer(Layer::Runoff).or_else(|| world.layer(Layer::Rain)).is_some();
         let water_m2 = |inflow: &Inflow| match rained {
             true => inflow.discharge_m3_s * YEAR_S,
             false => inflow.area_m2 * self.uniform_rain_mm_per_yr * 1e-3,
