@@ -104,7 +104,7 @@ fn log_ticks(low: f64, high: f64) -> Vec<Tick> {
             if l < low - 1e-9 || l > high + 1e-9 {
                 continue;
             }
-            let named = if high - low < 1.6 { [1, 2, 5].contains(&m) } else { m == 1 && decade % skip == 0 };
+            let named = if high - low < 2.2 { [1, 2, 5].contains(&m) } else { m == 1 && decade % skip == 0 };
             if named || skip == 1 {
                 ticks.push(Tick { at, text: named.then(|| power_text(m, decade)) });
             }

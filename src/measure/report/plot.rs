@@ -21,7 +21,7 @@ pub const STYLE: &str = "\
 svg.plot{font:12px system-ui,-apple-system,'Segoe UI',sans-serif;background:var(--paper)}
 svg.plot text{fill:var(--soft)}svg.plot .name{fill:var(--ink)}
 svg.plot .rule{stroke:var(--rule);stroke-width:1}svg.plot .frame{fill:none;stroke:var(--soft);stroke-width:1}
-svg.plot .earth{fill:var(--earth)}svg.plot .dots{fill:var(--dust);opacity:.35}
+svg.plot .earth{fill:var(--earth)}svg.plot .dots{fill:var(--dust);opacity:.5}
 svg.plot .points{fill:var(--world);stroke:var(--paper);stroke-width:1}
 svg.plot .bars{fill:var(--world);opacity:.75}
 svg.plot .curve{fill:none;stroke:var(--world);stroke-width:1.8;stroke-linejoin:round}
