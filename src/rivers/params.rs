@@ -10,7 +10,7 @@ pub struct RiversParams {
     /// Runoff where no stage has made a layer `runoff` or `rain`.
     #[schemars(range(min = 0.0, max = 20000.0), extend("x-unit" = "mm/yr", "x-effect" = "larger rivers"))]
     pub rain_mm_per_yr: f64,
-    /// A hollow of less area is no lake: it is drained or filled. Where absent, 1/10000 of the map.
+    /// A hollow of less area is no lake: it is drained or filled. Where absent, 1/10000 of the map, and at least four cells.
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "km2", "x-effect" = "fewer lakes"))]
     pub smallest_lake_km2: Option<f64>,
     /// A hollow that is nowhere deeper is no lake.

@@ -23,6 +23,8 @@ const YEAR_S: f64 = 31_557_600.0;
 const RIVER_SHARE: f64 = 1.0 / 4000.0;
 /// Share of the map that a hollow must cover to be a lake, where no area is given.
 const LAKE_SHARE: f64 = 1e-4;
+/// And how many cells at least.
+const LAKE_CELLS: f64 = 4.0;
 /// Size of the largest swells of a plain.
 const PLAIN_KM: f64 = 30.0;
 /// Height of its swells: it decides only where nothing else does.
@@ -105,8 +107,9 @@ impl Rivers {
         });
         let surface_m = Drainage::of(grid, &z, &outlet).surface_m;
         let mut lakes = hollows(grid, &z, &surface_m);
-        let smallest =
-            params.smallest_lake_km2.map_or(grid.cells() as f64 * LAKE_SHARE, |km2| km2 * 1e6 / grid.cell_area_m2());
+        let smallest = params
+            .smallest_lake_km2
+            .map_or((grid.cells() as f64 * LAKE_SHARE).max(LAKE_CELLS), |km2| km2 * 1e6 / grid.cell_area_m2());
         lakes.retain(|lake| lake.cells.len() as f64 >= smallest && lake.depth_m >= params.shallowest_lake_m);
         context.check()?;
         level(grid, &mut z, &outlet, &lakes);

@@ -242,7 +242,7 @@ fn basin() -> World {
 fn a_closed_basin_fills_to_its_brim_or_to_where_the_air_takes_all() {
     let lake = |loss: f64| {
         let mut world = basin();
-        let params = RiversParams { lake_loss_mm_per_yr: loss, carve: 0.0, ..fine() };
+        let params = RiversParams { lake_loss_mm_per_yr: loss, carve: 0.0, smallest_lake_km2: Some(25.0), ..fine() };
         run(&mut world, params);
         keep_the_rules(&world);
         let table = world.table("lakes").unwrap().clone();
@@ -264,7 +264,7 @@ fn a_closed_basin_fills_to_its_brim_or_to_where_the_air_takes_all() {
 #[test]
 fn outlines_of_lakes_enclose_their_area() {
     let mut world = basin();
-    run(&mut world, RiversParams { carve: 0.0, ..fine() });
+    run(&mut world, RiversParams { carve: 0.0, smallest_lake_km2: Some(25.0), ..fine() });
     let outline = world.table("lake_outlines").unwrap();
     let (x, y) = (outline.numbers("x_km").unwrap(), outline.numbers("y_km").unwrap());
     let area: f64 = (0..x.len()).map(|k| (k, (k + 1) % x.len())).map(|(a, b)| 0.5 * (x[a] * y[b] - x[b] * y[a])).sum();
