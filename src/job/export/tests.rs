@@ -311,3 +311,33 @@ fn meshes_of_the_map_and_of_a_part() {
     }
     assert_eq!(place.names(), ["m.stl", "part.stl"]);
 }
+
+#[test]
+fn maps_of_lines_are_whole_or_windows_and_take_contours_alone() {
+    let place = Place::of(128, 64);
+    let window = Some(Window { x_m: 10_000.0, y_m: 20_000.0, size_m: 30_000.0 });
+    let said = export(&place.request("m.svg")).unwrap();
+    assert!(said.notes[0].contains("rivers"));
+    export(&ExportRequest { window, contours_m: Some(250.0), ..place.request("part.geojson") }).unwrap();
+    let part = place.json("part.geojson");
+    assert_eq!(part["upthrust"]["contours_m"], 250.0);
+    assert_eq!(part["upthrust"]["extent_km"], serde_json::json!([30.0, 30.0]));
+    let layers: std::collections::BTreeSet<&str> =
+        part["features"].as_array().unwrap().iter().filter_map(|f| f["properties"]["layer"].as_str()).collect();
+    assert!(["border", "contour", "land", "peak"].iter().all(|layer| layers.contains(layer)), "{layers:?}");
+    let off = Some(Window { x_m: 100_000.0, y_m: 0.0, size_m: 30_000.0 });
+    let refused = [
+        ExportRequest { tiles: Some(2), ..place.request("a.svg") },
+        ExportRequest { size: Some(100), ..place.request("a.geojson") },
+        ExportRequest { contours_m: Some(1.0), ..place.request("a.svg") },
+        ExportRequest { contours_m: Some(-1.0), ..place.request("a.svg") },
+        ExportRequest { contours_m: Some(100.0), ..place.request("a.png") },
+        ExportRequest { contours_m: Some(100.0), ..place.request("a.glb") },
+        ExportRequest { window: off, ..place.request("a.svg") },
+        place.request("m.svg"),
+    ];
+    for request in refused {
+        assert!(export(&request).unwrap_err().refused(), "{request:?}");
+    }
+    assert_eq!(place.names(), ["m.svg", "part.geojson"]);
+}
