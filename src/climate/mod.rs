@@ -1,6 +1,7 @@
 //! Weather: wind, rain, temperature and the snow line. Writes layers; carves nothing.
 //!
-//! The stage `climate` takes no time: it looks at the ground and says what weather a year brings on the mean.
+//! The stage `climate` takes no time: it looks at the ground and says what weather a year brings on the mean. Coupled to
+//! the plates it looks again after each of their steps, so that ranges stand in the rain they make.
 //!
 //! | file | owns |
 //! |---|---|
@@ -46,6 +47,21 @@ struct Climate {
     placement: Placement,
 }
 
+impl Climate {
+    fn weather(&self, world: &World) -> Result<Weather, ProcessError> {
+        let share = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
+        Ok(Weather::over(&world.height(), world.sea_level_m, &self.params, share.as_ref()))
+    }
+}
+
+fn show(weather: Weather, world: &mut World) {
+    world.set_layer(Layer::Rain, weather.rain_mm_per_yr);
+    world.set_layer(Layer::Runoff, weather.runoff_mm_per_yr);
+    world.set_layer(Layer::Temperature, weather.temperature_degc);
+    world.set_layer(Layer::SnowLine, weather.snow_line_m);
+    world.set_layer(Layer::Biome, weather.biome);
+}
+
 impl Process for Climate {
     fn reads(&self) -> &'static [Layer] {
         &[Layer::Bedrock]
@@ -57,15 +73,23 @@ impl Process for Climate {
 
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
         context.check()?;
-        let share = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
-        let weather = Weather::over(&world.height(), world.sea_level_m, &self.params, share.as_ref());
+        let weather = self.weather(world)?;
         context.check()?;
-        world.set_layer(Layer::Rain, weather.rain_mm_per_yr);
-        world.set_layer(Layer::Runoff, weather.runoff_mm_per_yr);
-        world.set_layer(Layer::Temperature, weather.temperature_degc);
-        world.set_layer(Layer::SnowLine, weather.snow_line_m);
-        world.set_layer(Layer::Biome, weather.biome);
+        show(weather, world);
         Ok(Step::WHOLE)
+    }
+
+    fn follow(&mut self, world: &mut World, _context: &Context, _span_yr: f64) -> Result<(), ProcessError> {
+        show(self.weather(world)?, world);
+        Ok(())
+    }
+
+    fn publish(&mut self, world: &mut World, _context: &Context) -> Result<(), ProcessError> {
+        // Those it steps in turn with have changed the ground since.
+        if self.params.coupled {
+            show(self.weather(world)?, world);
+        }
+        Ok(())
     }
 
     fn save(&self) -> State {

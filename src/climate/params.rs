@@ -46,6 +46,9 @@ pub struct ClimateParams {
     /// How far behind a range air that came down stays dry.
     #[schemars(range(min = 1.0, max = 5000.0), extend("x-unit" = "km", "x-effect" = "longer rain shadows"))]
     pub shadow_km: f64,
+    /// Steps in turn with the plates stage before it: the weather follows the land as it rises.
+    #[schemars(extend("x-effect" = "rivers cut deeper where ranges catch the rain"))]
+    pub coupled: bool,
 }
 
 impl Default for ClimateParams {
@@ -64,6 +67,7 @@ impl Default for ClimateParams {
             drift_km: 15.0,
             lift_share: 0.2,
             shadow_km: 250.0,
+            coupled: false,
         }
     }
 }
