@@ -3,18 +3,22 @@
 use super::{Edges, Field, Grid};
 
 /// The four columns (or rows) around a position in cell units, and the fraction between the middle two.
+#[inline]
 fn around(at: f64, size: usize, edges: Edges) -> ([usize; 4], f64) {
-    let base = (at - 0.5).floor();
-    let pick = |step: f64| {
-        let i = base + step;
-        match edges {
-            Edges::Wrap => i.rem_euclid(size as f64) as usize,
-            Edges::Open | Edges::Closed => i.clamp(0.0, (size - 1) as f64) as usize,
-        }
+    let at = at - 0.5;
+    // The floor without a call: processors without an instruction for it are still about.
+    let whole = at as i64;
+    let base = if whole as f64 > at { whole - 1 } else { whole };
+    let last = size as i64 - 1;
+    let four = match edges {
+        Edges::Wrap => [-1, 0, 1, 2].map(|step| (base + step).rem_euclid(size as i64) as usize),
+        _ if base >= 1 && base + 2 <= last => [-1, 0, 1, 2].map(|step| (base + step) as usize),
+        _ => [-1, 0, 1, 2].map(|step| (base + step).clamp(0, last) as usize),
     };
-    ([pick(-1.0), pick(0.0), pick(1.0), pick(2.0)], at - 0.5 - base)
+    (four, at - base as f64)
 }
 
+#[inline]
 fn cells(grid: &Grid, at_m: [f64; 2]) -> ([usize; 4], f64, [usize; 4], f64) {
     let (xs, fx) = around(at_m[0] / grid.cell_m, grid.width, grid.edges);
     let (ys, fy) = around(at_m[1] / grid.cell_m, grid.height, grid.edges);
@@ -56,21 +60,26 @@ impl Stencil {
     /// The value of a field there.
     #[inline]
     pub fn read(&self, field: &Field<f32>) -> f64 {
-        let ([first, .., last], mut sum) = (self.columns, 0.0);
+        let [first, .., last] = self.columns;
+        // Down first: four sums side by side.
+        let mut sums = [0.0; 4];
         for (&y, down) in self.rows.iter().zip(self.down) {
             let row = field.row(y);
-            // Away from the rim the four stand side by side.
             let four = match row.get(first..first + 4) {
+                // Away from the rim the four stand side by side.
                 Some(&[a, b, c, d]) if first + 3 == last => [a, b, c, d],
                 _ => self.columns.map(|x| row[x]),
             };
-            let across: f64 = four.iter().zip(self.across).map(|(&v, w)| w * v as f64).sum();
-            sum += down * across;
+            for (sum, value) in sums.iter_mut().zip(four) {
+                *sum += down * f64::from(value);
+            }
         }
-        sum
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| sums[k] * self.across[k]);
+        (a + b) + (c + d)
     }
 }
 
+#[inline]
 fn weights(t: f64) -> [f64; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [0.5 * (-t3 + 2.0 * t2 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0), 0.5 * (-3.0 * t3 + 4.0 * t2 + t), 0.5 * (t3 - t2)]

@@ -28,6 +28,8 @@ use super::{
 /// Width over which the strength of the lithosphere spreads the answer to a load, m: the standard deviation that comes
 /// nearest to the flexure of a plate about 5 km thick.
 const FLEXURE_M: f64 = 20e3;
+/// No tectonic cell.
+const OUTSIDE: u32 = u32::MAX;
 /// What lies on the bedrock and what is told of the ground: both drift with it.
 const CARRIED: [Layer; 4] = [Layer::Lava, Layer::Sediment, Layer::Wear, Layer::Deposit];
 
@@ -35,10 +37,14 @@ const CARRIED: [Layer; 4] = [Layer::Lava, Layer::Sediment, Layer::Wear, Layer::D
 pub struct Carved {
     /// Where each cell of the map reads the plates, east and south, m.
     reads_m: [Field<f32>; 2],
+    /// The tectonic cell that each cell of the map reads, [`OUTSIDE`] where there is none.
+    under: Vec<u32>,
     /// Tectonic cells on the map that no cell of it reads, and where it shows them, m: most of them where it is coarser.
     unread: Vec<(usize, DVec2)>,
     /// The plates' surface when they moved last.
     surface: Surface,
+    /// Its height as the map reads it, m.
+    shown_m: Field<f32>,
     poses: Vec<Pose>,
     /// Height that the map would have now, had nobody carved it, m.
     expected: Field<f32>,
@@ -59,7 +65,6 @@ struct Ground {
 
 /// Where the plates were before a step, and where they are.
 struct Motion<'a> {
-    before: &'a Surface,
     now: &'a Surface,
     poses_before: &'a [Pose],
     poses: &'a [Pose],
@@ -76,9 +81,19 @@ impl Carved {
         });
         let reads_m = [0, 1].map(|axis| reads.map(|at| at[axis]));
         let surface = Surface::of(run, params);
-        let unread = unread(&reads_m, &run.domain, warp);
+        let under = under(&reads_m, &run.domain);
+        let unread = unread(&under, &run.domain, warp);
         let expected = Field::filled(map, 0.0);
-        let mut carved = Self { reads_m, unread, poses: poses(run), expected, surface, worn: Vec::new() };
+        let mut carved = Self {
+            shown_m: surface.shown(&reads_m),
+            reads_m,
+            under,
+            unread,
+            poses: poses(run),
+            expected,
+            surface,
+            worn: Vec::new(),
+        };
         carved.expected =
             Field::from_fn(map, |x, y| bare(&carved.surface, carved.reads_at(x, y), map.center_m(x, y), plains));
         carved
@@ -102,6 +117,7 @@ impl Carved {
     /// Takes up a saved run, replayed up to here.
     pub fn restore(&mut self, run: &Simulation, params: &PlatesParams, expected: Field<f32>, worn: Vec<Field<f32>>) {
         (self.surface, self.poses) = (Surface::of(run, params), poses(run));
+        self.shown_m = self.surface.shown(&self.reads_m);
         (self.expected, self.worn) = (expected, worn);
     }
 
@@ -121,34 +137,29 @@ impl Carved {
     pub fn carry(&mut self, run: &Simulation, params: &PlatesParams, plains: &Plains, span_yr: f64, world: &mut World) {
         let (now, poses) = (Surface::of(run, params), poses(run));
         let rebound = self.rebound(world.sea_level_m);
-        let motion = Motion {
-            before: &self.surface,
-            now: &now,
-            poses_before: &self.poses,
-            poses: &poses,
-            rebound: &rebound,
-            span_myr: span_yr * 1e-6,
-        };
-        let height = world.height();
+        let motion =
+            Motion { now: &now, poses_before: &self.poses, poses: &poses, rebound: &rebound, span_myr: span_yr * 1e-6 };
+        let (height, shown_m) = (world.height(), now.shown(&self.reads_m));
         let carried = CARRIED.map(|layer| world.layer(layer));
         let ground = Field::from_fn(world.grid, |x, y| match self.origin(x, y, &motion) {
-            Some((from_m, lift_m)) => {
-                let around = Stencil::at(&height.grid, from_m);
+            Some((from_m, rebound_m)) => {
+                let from = Stencil::at(&height.grid, from_m);
+                let lift_m = shown_m.at(x, y) as f64 - from.read(&self.shown_m) + rebound_m;
                 // Cubic reading overshoots by a little; none of these can be less than nothing.
-                let part = |field: &Field<f32>| (around.read(field) as f32).max(0.0);
+                let part = |field: &Field<f32>| (from.read(field) as f32).max(0.0);
                 let carried = carried.map(|field| field.map_or(0.0, part));
-                Ground { height_m: around.read(&height) as f32, lift_m: lift_m as f32, carried }
+                Ground { height_m: from.read(&height) as f32, lift_m: lift_m as f32, carried }
             }
-            None => Ground {
-                height_m: bare(&now, self.reads_at(x, y), world.grid.center_m(x, y), plains),
-                ..Ground::default()
-            },
+            None => {
+                let height_m = bare(&now, self.reads_at(x, y), world.grid.center_m(x, y), plains);
+                Ground { height_m, ..Ground::default() }
+            }
         });
-        (self.surface, self.poses) = (now, poses);
+        (self.surface, self.poses, self.shown_m) = (now, poses, shown_m);
         self.write(&ground, span_yr, world);
     }
 
-    /// Where a cell's ground lay before, on the map, m, and what the plates raise it by, m; new sea floor comes from nowhere.
+    /// Where a cell's ground lay before, on the map, m, and how far it comes back up, m; new sea floor comes from nowhere.
     fn origin(&self, x: usize, y: usize, motion: &Motion) -> Option<([f64; 2], f64)> {
         let at = self.reads_at(x, y);
         let q = motion.now.at(at);
@@ -157,9 +168,8 @@ impl Carved {
         }
         let plate = motion.now.plate_at(q) as usize;
         let before = motion.poses_before[plate].to_map(motion.poses[plate].to_body(at));
-        let q_before = motion.before.at(before);
-        let raised = cubic(&motion.now.height, q) - cubic(&motion.before.height, q_before);
-        Some((self.shown_at(x, y, before - at), raised + linear(motion.rebound, q_before)))
+        let rebound_m = linear(motion.rebound, self.surface.at(before));
+        Some((self.shown_at(x, y, before - at), rebound_m))
     }
 
     fn write(&mut self, ground: &Field<Ground>, span_yr: f64, world: &mut World) {
@@ -218,10 +228,8 @@ impl Carved {
     /// Means over the tectonic cells of something on the map; where it reads none of a cell, what it shows there.
     fn on_plates(&self, field: &Field<f32>, domain: &Domain) -> Field<f32> {
         let mut sums = vec![(0.0f64, 0u32); domain.cells * domain.cells];
-        for (i, &value) in field.data.iter().enumerate() {
-            let (x, y) = field.grid.cell_of(i);
-            if let Some(cell) = cell_index(domain, self.reads_at(x, y)) {
-                let (sum, count) = &mut sums[cell];
+        for (&value, &cell) in field.data.iter().zip(&self.under) {
+            if let Some((sum, count)) = sums.get_mut(cell as usize) {
                 (*sum, *count) = (*sum + value as f64, *count + 1);
             }
         }
@@ -241,13 +249,18 @@ fn bare(surface: &Surface, reads_m: DVec2, at_m: [f64; 2], plains: &Plains) -> f
     (base + plains.height(at_m, base, linear(&surface.kind, q))) as f32
 }
 
+/// The tectonic cell that each cell of the map reads.
+fn under(reads_m: &[Field<f32>; 2], domain: &Domain) -> Vec<u32> {
+    let cell = |(&x, &y): (&f32, &f32)| cell_index(domain, DVec2::new(x as f64, y as f64));
+    let cells = reads_m[0].data.par_iter().zip(&reads_m[1].data).map(cell);
+    cells.map(|cell| cell.map_or(OUTSIDE, |cell| cell as u32)).collect()
+}
+
 /// The tectonic cells on the map that no cell of it reads, and where it shows them.
-fn unread(reads_m: &[Field<f32>; 2], domain: &Domain, warp: &Warp) -> Vec<(usize, DVec2)> {
+fn unread(under: &[u32], domain: &Domain, warp: &Warp) -> Vec<(usize, DVec2)> {
     let mut read = vec![false; domain.cells * domain.cells];
-    for (&x, &y) in reads_m[0].data.iter().zip(&reads_m[1].data) {
-        if let Some(cell) = cell_index(domain, DVec2::new(x as f64, y as f64)) {
-            read[cell] = true;
-        }
+    for &cell in under.iter().filter(|&&cell| cell != OUTSIDE) {
+        read[cell as usize] = true;
     }
     let shown = |cell: usize| {
         let at_m = warp.shown_at(domain.cell_center_m(cell % domain.cells, cell / domain.cells));

@@ -199,6 +199,13 @@ impl Surface {
         (at_m - self.corner_m).into()
     }
 
+    /// Its height as a map reads it, m; `reads_m` are the points of the plates it reads.
+    pub fn shown(&self, reads_m: &[Field<f32>; 2]) -> Field<f32> {
+        Field::from_fn(reads_m[0].grid, |x, y| {
+            cubic(&self.height, self.at(DVec2::new(reads_m[0].at(x, y) as f64, reads_m[1].at(x, y) as f64))) as f32
+        })
+    }
+
     /// Whether this is sea floor made in the last so many My.
     pub fn is_newer(&self, q: [f64; 2], myr: f64) -> bool {
         let i = self.cell_at(q);

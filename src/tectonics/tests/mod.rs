@@ -3,6 +3,7 @@
 //! The stage is a square of 2,000 km in 400 cells, halved by a border from north to south. A unit of the engine is 50 km
 //! and the plate speed 50 mm/yr, so that an engine second is a million years.
 
+mod carved;
 mod crust;
 mod motion;
 mod painted;
