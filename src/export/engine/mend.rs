@@ -33,12 +33,18 @@ pub fn zooms(extent_m: [f64; 2], vertices: usize, wanted: Part) -> String {
         };
         // Down to whole metres, so that nothing is rounded off the map.
         let [x_m, y_m, whole_m] = [place(0), place(1), side_m].map(f64::floor);
-        let [x_km, y_km, side_km] = [x_m, y_m, whole_m].map(|m| m * 1e-3);
+        let [x_km, y_km, side_km] = [x_m, y_m, whole_m].map(km);
         text += &format!("\n  [[stage]]\n  kind = \"zoom\"\n  window_km = [{x_km}, {y_km}, {side_km}]");
         corner_m = [corner_m[0] + x_m, corner_m[1] + y_m];
         now_m = [whole_m; 2];
     }
     text
+}
+
+/// Whole metres as kilometres.
+fn km(m: f64) -> String {
+    let text = format!("{:.3}", m * 1e-3);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 #[cfg(test)]
