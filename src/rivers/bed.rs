@@ -26,11 +26,15 @@ pub struct Beds {
 }
 
 /// Cuts a bed of depth `cut_m` into every cell for which it is above 0. Beds fall all the way to the sea, a lake or the
-/// rim, and never below them; a lake's level follows the bed of its outlet.
+/// rim, and never below them. The sills over which lakes spill stay, so that lakes keep their levels.
 pub fn cut(waters: &Waters, z: &[f64], sea_m: f64, cut_m: impl Fn(usize) -> f64) -> Beds {
     let fall = least_fall_m(waters.way.grid);
     let mut ground_m = z.to_vec();
     let mut surface_m = z.to_vec();
+    let mut sill = vec![false; z.len()];
+    for &i in waters.lakes.iter().flat_map(|lake| &lake.cells) {
+        sill[waters.way.receiver[i as usize] as usize] = true;
+    }
     for &i in &waters.way.order {
         let (i, r) = (i as usize, waters.way.receiver[i as usize] as usize);
         let lake = waters.lake_of[i];
@@ -43,7 +47,7 @@ pub fn cut(waters: &Waters, z: &[f64], sea_m: f64, cut_m: impl Fn(usize) -> f64)
         // A rim cell's bed has the sea for its only floor.
         let floor_m = if r == i { sea_m } else { surface_m[r].max(sea_m) };
         let depth_m = cut_m(i);
-        if depth_m > 0.0 {
+        if depth_m > 0.0 && !sill[i] {
             ground_m[i] = (z[i] - depth_m).max(floor_m + fall).min(z[i]);
         }
         surface_m[i] = ground_m[i];

@@ -4,7 +4,7 @@ use super::{
     RiversParams,
     bed::{self, Beds},
     course::Network,
-    hollows::{fill, hollows, least_fall_m, level, tilt_plains},
+    hollows::{Hollow, fill, hollows, least_fall_m, level, tilt_plains},
     inflow::{inflows, open_gates},
     tables,
     waters::{Climate, Waters},
@@ -110,13 +110,29 @@ impl Rivers {
         let smallest = params
             .smallest_lake_km2
             .map_or((grid.cells() as f64 * LAKE_SHARE).max(LAKE_CELLS), |km2| km2 * 1e6 / grid.cell_area_m2());
-        lakes.retain(|lake| lake.cells.len() as f64 >= smallest && lake.depth_m >= params.shallowest_lake_m);
-        context.check()?;
-        level(grid, &mut z, &outlet, &lakes);
+        let worth = |lake: &Hollow| lake.cells.len() as f64 >= smallest && lake.depth_m >= params.shallowest_lake_m;
+        lakes.retain(worth);
+        // A ditch can drain a lake as well: what is left of it is judged again, until all that are left are lakes.
+        let way = loop {
+            context.check()?;
+            level(grid, &mut z, &outlet, &lakes);
+            let way = Drainage::of(grid, &z, &outlet);
+            let left = hollows(grid, &z, &way.surface_m);
+            if left.iter().all(worth) || lakes.is_empty() {
+                break way;
+            }
+            // Fewer at each turn, so that it ends.
+            let before = lakes.len();
+            lakes = left;
+            lakes.retain(worth);
+            if lakes.len() >= before {
+                break way;
+            }
+        };
         context.check()?;
 
         let climate = self.climate(world, &sea);
-        let waters = Waters::of(grid, &z, &outlet, &climate);
+        let waters = Waters::of(way, &z, &outlet, &climate);
         context.check()?;
         let order = waters.order(self.least_m3_s(&climate, &sea));
         let bankfull = |i: usize| waters.discharge_m3_s[i] * params.bankfull_ratio;

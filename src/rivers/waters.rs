@@ -41,9 +41,9 @@ pub struct Waters {
 }
 
 impl Waters {
-    /// The waters on a ground.
-    pub fn of(grid: Grid, z: &[f64], outlets: &[bool], climate: &Climate) -> Self {
-        let way = Drainage::of(grid, z, outlets);
+    /// The waters on a ground that has been routed to its outlets.
+    pub fn of(way: Drainage, z: &[f64], outlets: &[bool], climate: &Climate) -> Self {
+        let grid = way.grid;
         let open = |way: &Drainage| -> Vec<Lake> {
             let lake = |h: Hollow| Lake { cells: h.cells, bottom: h.bottom, level_m: h.level_m, closed: false };
             hollows(grid, z, &way.surface_m).into_iter().map(lake).collect()
@@ -96,8 +96,12 @@ impl Waters {
             if net >= 0.0 || lake.cells.len() < 2 {
                 continue;
             }
-            let gain = net + climate.loss_m3_s * lake.cells.len() as f64;
-            let wet = ((gain / climate.loss_m3_s) as usize).clamp(1, lake.cells.len() - 1);
+            // Ground that falls dry sheds like the rest of the land.
+            let count = lake.cells.len() as f64;
+            let floor: f64 = lake.cells.iter().map(|&i| climate.runoff_m3_s[i as usize]).sum();
+            let gain = net + climate.loss_m3_s * count + floor;
+            let even = gain / (climate.loss_m3_s + floor / count);
+            let wet = (even as usize).clamp(1, lake.cells.len() - 1);
             let mut heights: Vec<f64> = lake.cells.iter().map(|&i| z[i as usize]).collect();
             let (_, &mut level_m, _) = heights.select_nth_unstable_by(wet, f64::total_cmp);
             let cells = pool(grid, z, lake.bottom, level_m);
