@@ -33,7 +33,10 @@ fn forcing(uplift: &[f32]) -> Forcing<'_> {
     Forcing {
         sea_level_m: f64::MIN,
         uplift_mm_per_yr: Some(uplift),
+        uplift_factor: 1.0,
         rain_mm_per_yr: None,
+        inflows: &[],
+        gates: &[],
         uniform_rain_mm_per_yr: 1000.0,
         ease: None,
     }

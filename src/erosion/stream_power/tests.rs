@@ -21,7 +21,10 @@ const LAW: Law = Law {
 const DRY: Forcing = Forcing {
     sea_level_m: -1e9,
     uplift_mm_per_yr: None,
+    uplift_factor: 1.0,
     rain_mm_per_yr: None,
+    inflows: &[],
+    gates: &[],
     uniform_rain_mm_per_yr: 1000.0,
     ease: None,
 };
