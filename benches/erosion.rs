@@ -9,19 +9,16 @@ use upthrust::{
     erosion::stream_power::{Carver, Forcing, Law, Rim, StreamPowerParams},
     flow::Router,
     grid::{Edges, Field, Grid},
-    noise::{Fractal, Key},
+    noise::{Fbm, Key},
 };
 
 const SIZES: [usize; 3] = [512, 1024, 2048];
 
-/// Level ground with a metre of noise on hills of some hundred.
+/// Fractal hills of some hundred metres.
 fn young(size: usize) -> (Grid, Vec<f64>) {
     let grid = Grid::new(size, size, 1e6, Edges::Open);
-    let key = Key::new(5);
-    let field = Field::from_fn(grid, |x, y| {
-        let [x, y] = grid.center_m(x, y);
-        Fractal::default().at([x / 2e5, y / 2e5], key) as f32
-    });
+    let sum = Fbm::new(200e3, 0.8).octaves(Key::new(5), grid.cell_m);
+    let field = Field::from_fn(grid, |x, y| sum.value(grid.center_m(x, y)) as f32);
     (grid, field.data.iter().map(|&v| 500.0 + 300.0 * v as f64).collect())
 }
 

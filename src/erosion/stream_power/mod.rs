@@ -15,9 +15,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    grid::Grid,
     process::{Context, Placement, Process, ProcessError, State, Step},
     world::{Layer, World},
 };
+
+/// Steps beyond which a run would take days.
+const MOST_STEPS: f64 = 1e5;
 
 /// What the rim of an open map is to rivers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -143,6 +147,18 @@ impl Process for Stage {
 
     fn writes(&self) -> &'static [Layer] {
         &[Layer::Bedrock, Layer::Lava, Layer::Sediment, Layer::Wear, Layer::Deposit]
+    }
+
+    fn fit(&self, _grid: &Grid) -> Result<(), ProcessError> {
+        let (myr, kyr) = (self.params.duration_myr, self.params.step_kyr);
+        if 1e3 * myr / kyr > MOST_STEPS {
+            return Err(ProcessError::Unfit(format!(
+                "{myr} My in steps of {kyr} ky are {:.0} steps; raise step_kyr to {} or more",
+                1e3 * myr / kyr,
+                1e3 * myr / MOST_STEPS
+            )));
+        }
+        Ok(())
     }
 
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
