@@ -55,7 +55,9 @@ fn steps(c: &mut Criterion) {
             )
         });
         let mut shaped = ground.clone();
-        (0..60).for_each(|_| drop(carver.step(&law(), &forcing(&uplift), &mut shaped, 1e5)));
+        for _ in 0..60 {
+            carver.step(&law(), &forcing(&uplift), &mut shaped, 1e5);
+        }
         group.bench_function(BenchmarkId::new("step", size), |b| {
             b.iter(|| carver.step(&law(), &forcing(&uplift), &mut shaped, 1e5))
         });
