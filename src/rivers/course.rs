@@ -60,6 +60,9 @@ pub struct Network<'a> {
     pub order: &'a [u8],
 }
 
+/// The last point of a line, m, and the height there, m.
+type End = ([f64; 2], f64);
+
 const NONE: u32 = u32::MAX;
 
 impl Network<'_> {
@@ -119,7 +122,7 @@ impl Network<'_> {
     }
 
     /// Where the line of a river ends that has its last cell here: the place, its height, and what is there.
-    fn end(&self, mouth: usize, passed: &[(u32, [f64; 2])]) -> Option<(Option<([f64; 2], f64)>, Into)> {
+    fn end(&self, mouth: usize, passed: &[(u32, [f64; 2])]) -> Option<(Option<End>, Into)> {
         let (grid, r) = (self.grid(), self.waters.way.receiver[mouth] as usize);
         let center = |i: usize| {
             let (x, y) = grid.cell_of(i);
@@ -160,7 +163,7 @@ impl Network<'_> {
     fn line(
         &self,
         stem: &[usize],
-        end: Option<([f64; 2], f64)>,
+        end: Option<End>,
         into: Into,
         passed: &mut [(u32, [f64; 2])],
         number: usize,

@@ -209,10 +209,10 @@ fn reshape(world: &mut World, ground_m: &[f64], mask: Option<&Field<f32>>, stage
     let mut wear = world.remove_layer(Layer::Wear).unwrap_or_else(|| Field::filled(world.grid, 0.0));
     let mut deposit = world.remove_layer(Layer::Deposit).unwrap_or_else(|| Field::filled(world.grid, 0.0));
     let (mut came_m, mut left_m) = (0.0, 0.0);
-    for i in 0..ground_m.len() {
+    for (i, &wanted_m) in ground_m.iter().enumerate() {
         let old = height.data[i];
         let share = mask.map_or(1.0, |mask| mask.data[i] as f64);
-        let new = (old as f64 + (ground_m[i] - old as f64) * share) as f32;
+        let new = (old as f64 + (wanted_m - old as f64) * share) as f32;
         if new == old {
             continue;
         }

@@ -27,11 +27,8 @@ pub fn length(line: &[[f64; 2]]) -> f64 {
 
 /// Sorts rings into polygons: each hole goes to the smallest outer ring around it. What is smaller than `least` is left out.
 pub fn polygons(rings: Vec<Line>, least: f64) -> Vec<Polygon> {
-    let (mut outers, mut holes): (Vec<(f64, Line)>, Vec<(f64, Line)>) = rings
-        .into_iter()
-        .map(|ring| (area(&ring), ring))
-        .filter(|(area, _)| area.abs() > least)
-        .partition(|r| r.0 > 0.0);
+    let sized = rings.into_iter().map(|ring| (area(&ring), ring)).filter(|(area, _)| area.abs() > least);
+    let (mut outers, mut holes): (Vec<_>, Vec<_>) = sized.partition(|(area, _)| *area > 0.0);
     // The smallest first, so that the first that fits is the one.
     outers.sort_by(|a, b| a.0.total_cmp(&b.0));
     holes.sort_by(|a, b| b.0.total_cmp(&a.0));
