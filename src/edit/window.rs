@@ -15,7 +15,7 @@ use crate::{
 
 /// Rounds in which the means of old cells are brought back; of a wave of two cells along one axis each leaves 3/8, by the
 /// mean of the cubic over a cell.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 6;
 /// Half width of the square over which roughness is averaged, old cells.
 const AROUND: usize = 3;
 /// Exponents of natural ground; past them the estimates of height have no meaning.
