@@ -26,8 +26,10 @@ use crate::erosion::diffusion::diffuse;
 const REFERENCE_RAIN_MM_PER_YR: f64 = 1000.0;
 /// Rounds after which deposition has to have settled.
 const MOST_ROUNDS: usize = 30;
-/// Change of height in a round below which it has, m: far less than what a step's length leaves open.
-const SETTLED_M: f64 = 1e-2;
+/// Change of height in a round below which it has, as a share of the step's greatest: less than its length leaves open.
+const SETTLED_SHARE: f64 = 0.01;
+/// And the change below which it has in any case, m.
+const SETTLED_M: f64 = 1e-3;
 
 /// Constants of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -293,6 +295,7 @@ impl Carver {
         let mut cells = vec![1.0; height_m.len()];
         self.router.descend(&mut cells, |_, count| *count);
         height_m.copy_from_slice(&self.raised_m);
+        let mut enough_m = 0.0f64;
         for _ in 0..MOST_ROUNDS {
             let raised = self.surface_m.par_iter_mut().zip(&self.raised_m).zip(&laid);
             raised.for_each(|((s, &raised), &laid)| *s = raised + laid);
@@ -310,9 +313,10 @@ impl Carver {
                     (ground - std::mem::replace(z, ground)).abs()
                 });
             let change = changes.reduce(|| 0.0, f64::max);
-            if change < SETTLED_M {
+            if change < enough_m.max(SETTLED_M) {
                 break;
             }
+            enough_m = enough_m.max(SETTLED_SHARE * change);
             self.gather_load(height_m);
             // What came from above, without the cell's own, spread over its catchment.
             let (load, surface, way) = (&self.load_m, &self.surface_m, self.router.ways());
