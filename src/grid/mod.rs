@@ -21,7 +21,7 @@ pub use field::Field;
 pub use parallel::{for_each_row, map_cells, sum_f64, sum_rows};
 pub(crate) use resample::keys;
 pub use resample::{Places, Points, resample, resample_at};
-pub use sample::{Stencil, cubic, linear};
+pub use sample::{Corners, Stencil, cubic, linear};
 
 use serde::{Deserialize, Serialize};
 

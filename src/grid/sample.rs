@@ -2,38 +2,71 @@
 
 use super::{Edges, Field, Grid};
 
-/// The four columns (or rows) around a position in cell units, and the fraction between the middle two.
+/// The whole part of a position in cell units, counted from cell centres, and what is left of it.
 #[inline]
-fn around(at: f64, size: usize, edges: Edges) -> ([usize; 4], f64) {
+fn split(at: f64) -> (i64, f64) {
     let at = at - 0.5;
     // The floor without a call: processors without an instruction for it are still about.
     let whole = at as i64;
     let base = if whole as f64 > at { whole - 1 } else { whole };
-    let last = size as i64 - 1;
-    let four = match edges {
-        Edges::Wrap => [-1, 0, 1, 2].map(|step| (base + step).rem_euclid(size as i64) as usize),
-        _ if base >= 1 && base + 2 <= last => [-1, 0, 1, 2].map(|step| (base + step) as usize),
-        _ => [-1, 0, 1, 2].map(|step| (base + step).clamp(0, last) as usize),
-    };
-    (four, at - base as f64)
+    (base, at - base as f64)
 }
 
+/// The column (or row) of an index that may lie beyond the rim.
 #[inline]
-fn cells(grid: &Grid, at_m: [f64; 2]) -> ([usize; 4], f64, [usize; 4], f64) {
-    let (xs, fx) = around(at_m[0] / grid.cell_m, grid.width, grid.edges);
-    let (ys, fy) = around(at_m[1] / grid.cell_m, grid.height, grid.edges);
-    (xs, fx, ys, fy)
+fn pick(at: i64, size: usize, edges: Edges) -> usize {
+    match edges {
+        Edges::Wrap => at.rem_euclid(size as i64) as usize,
+        Edges::Open | Edges::Closed => at.clamp(0, size as i64 - 1) as usize,
+    }
+}
+
+/// The four columns (or rows) around a position in cell units, and the fraction between the middle two.
+#[inline]
+fn around(at: f64, size: usize, edges: Edges) -> ([usize; 4], f64) {
+    let (base, rest) = split(at);
+    if base >= 1 && base + 2 < size as i64 {
+        let first = base as usize - 1;
+        return ([first, first + 1, first + 2, first + 3], rest);
+    }
+    ([-1, 0, 1, 2].map(|step| pick(base + step, size, edges)), rest)
 }
 
 /// Bilinear value at a point in metres; the rim's value is continued beyond it.
 pub fn linear(field: &Field<f32>, at_m: [f64; 2]) -> f64 {
-    let (xs, fx, ys, fy) = cells(&field.grid, at_m);
-    let row = |y: usize| {
-        let (a, b) = (field.at(xs[1], y) as f64, field.at(xs[2], y) as f64);
-        a + (b - a) * fx
-    };
-    let (top, bottom) = (row(ys[1]), row(ys[2]));
-    top + (bottom - top) * fy
+    Corners::at(&field.grid, at_m).read(field)
+}
+
+/// The four cells around a point and the point's place between them: reads several fields of one grid at one place.
+#[derive(Clone, Copy, Debug)]
+pub struct Corners {
+    columns: [usize; 2],
+    rows: [usize; 2],
+    across: f64,
+    down: f64,
+}
+
+impl Corners {
+    /// The cells around a point in metres.
+    #[inline]
+    pub fn at(grid: &Grid, at_m: [f64; 2]) -> Self {
+        let (x, across) = split(at_m[0] / grid.cell_m);
+        let (y, down) = split(at_m[1] / grid.cell_m);
+        let columns = [pick(x, grid.width, grid.edges), pick(x + 1, grid.width, grid.edges)];
+        let rows = [pick(y, grid.height, grid.edges), pick(y + 1, grid.height, grid.edges)];
+        Self { columns, rows, across, down }
+    }
+
+    /// The value of a field there.
+    #[inline]
+    pub fn read(&self, field: &Field<f32>) -> f64 {
+        let [west, east] = self.columns;
+        let [top, bottom] = self.rows.map(|y| {
+            let (a, b) = (field.at(west, y) as f64, field.at(east, y) as f64);
+            a + (b - a) * self.across
+        });
+        top + (bottom - top) * self.down
+    }
 }
 
 /// Catmull-Rom value at a point in metres: smooth slopes, exact at cell centres, may overshoot by a little.
@@ -52,8 +85,10 @@ pub struct Stencil {
 
 impl Stencil {
     /// The stencil around a point in metres.
+    #[inline]
     pub fn at(grid: &Grid, at_m: [f64; 2]) -> Self {
-        let (columns, fx, rows, fy) = cells(grid, at_m);
+        let (columns, fx) = around(at_m[0] / grid.cell_m, grid.width, grid.edges);
+        let (rows, fy) = around(at_m[1] / grid.cell_m, grid.height, grid.edges);
         Self { columns, rows, across: weights(fx), down: weights(fy) }
     }
 

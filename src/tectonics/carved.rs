@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::{
     crust,
-    grid::{Field, Grid, Stencil, cubic, linear},
+    grid::{Corners, Field, Grid, Stencil, cubic, linear},
     world::{Layer, World},
 };
 
@@ -194,8 +194,8 @@ impl Carved {
         DVec2::new(self.reads_m[0].at(x, y) as f64, self.reads_m[1].at(x, y) as f64)
     }
 
-    /// The point of the map that reads the plates `by` metres from where cell `(x, y)` does; Newton's method with the
-    /// Jacobian at the cell, good to a small share of a cell for steps this short.
+    /// The point of the map that reads the plates `by` metres from where cell `(x, y)` does: Newton's method with the
+    /// Jacobian at the cell, two steps of it, good to a small share of a cell for motions this short.
     fn shown_at(&self, x: usize, y: usize, by: DVec2) -> [f64; 2] {
         let grid = &self.reads_m[0].grid;
         let [east, south] = [0, 1].map(|k| DVec2::from(self.reads_m[k].gradient(x, y)));
@@ -204,12 +204,9 @@ impl Carved {
         let (here, wanted) = (DVec2::from(grid.center_m(x, y)), self.reads_at(x, y) + by);
         let extent = DVec2::from(grid.extent_m());
         let mut at = here + solve(by);
-        for _ in 0..2 {
-            if at.cmplt(DVec2::ZERO).any() || at.cmpgt(extent).any() {
-                break;
-            }
-            let reads = DVec2::new(linear(&self.reads_m[0], at.into()), linear(&self.reads_m[1], at.into()));
-            at += solve(wanted - reads);
+        if at.cmpge(DVec2::ZERO).all() && at.cmple(extent).all() {
+            let corners = Corners::at(grid, at.into());
+            at += solve(wanted - DVec2::new(corners.read(&self.reads_m[0]), corners.read(&self.reads_m[1])));
         }
         at.into()
     }
