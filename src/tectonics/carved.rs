@@ -4,7 +4,7 @@
 //! Every step follows each cell of the map back to where its ground lay before. Ground keeps what was carved into it,
 //! the plates' own smooth surface changes below it, and a load that was taken off comes back up by the ratio of the
 //! densities of crust and mantle, spread over the width that the lithosphere's strength spreads it. New sea floor
-//! begins bare.
+//! begins bare; land that comes in over the rim stands as high as the land it joins, but nobody has carved it yet.
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -141,7 +141,17 @@ impl Carved {
             Motion { now: &now, poses_before: &self.poses, poses: &poses, rebound: &rebound, span_myr: span_yr * 1e-6 };
         let (height, shown_m) = (world.height(), now.shown(&self.reads_m));
         let carried = CARRIED.map(|layer| world.layer(layer));
+        let carved = self.carved_on_the_whole(&height, &run.domain);
+        let extent_m = world.grid.extent_m();
+        let beyond = |at_m: [f64; 2]| (0..2).any(|k| at_m[k] < 0.0 || at_m[k] > extent_m[k]);
         let ground = Field::from_fn(world.grid, |x, y| match self.origin(x, y, &motion) {
+            Some((from_m, _)) if beyond(from_m) => {
+                let rim = Corners::at(&world.grid, [0, 1].map(|k| from_m[k].clamp(0.0, extent_m[k])));
+                let reads = DVec2::new(rim.read(&self.reads_m[0]), rim.read(&self.reads_m[1]));
+                let height_m = bare(&now, self.reads_at(x, y), world.grid.center_m(x, y), plains);
+                let carved_m = linear(&carved, self.surface.at(reads)) as f32;
+                Ground { height_m: height_m + carved_m, ..Ground::default() }
+            }
             Some((from_m, rebound_m)) => {
                 let from = Stencil::at(&height.grid, from_m);
                 let lift_m = shown_m.at(x, y) as f64 - from.read(&self.shown_m) + rebound_m;
@@ -157,6 +167,12 @@ impl Carved {
         });
         (self.surface, self.poses, self.shown_m) = (now, poses, shown_m);
         self.write(&ground, span_yr, world);
+    }
+
+    /// How much higher the ground is than the plates' own surface, without its valleys, on the tectonic cells, m.
+    fn carved_on_the_whole(&self, height: &Field<f32>, domain: &Domain) -> Field<f32> {
+        let over = Field::from_fn(height.grid, |x, y| height.at(x, y) - self.shown_m.at(x, y));
+        blurred(&self.on_plates(&over, domain), FLEXURE_M)
     }
 
     /// Where a cell's ground lay before, on the map, m, and how far it comes back up, m; new sea floor comes from nowhere.
