@@ -10,7 +10,6 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::{
-    crust,
     grid::{Corners, Field, Grid, Stencil, cubic, linear},
     world::{Layer, World},
 };
@@ -20,6 +19,7 @@ use super::{
     engine::Pose,
     exchange::cell_index,
     params::PlatesParams,
+    raise,
     simulation::Simulation,
     surface::{Plains, Surface, blurred},
     warp::Warp,
@@ -28,6 +28,10 @@ use super::{
 /// Width over which the strength of the lithosphere spreads the answer to a load, m: the standard deviation that comes
 /// nearest to the flexure of a plate about 5 km thick.
 const FLEXURE_M: f64 = 20e3;
+/// How far ground may stand beyond the band between the plates' own surface and the sea, m. Rivers and the sea's sediment
+/// bring the one towards the other; what would end further out was carved or filled where another border was, such as
+/// the fill of a trench that a collision has closed, and has gone down or slid off with it.
+const BEYOND_M: f64 = 1_500.0;
 /// No tectonic cell.
 const OUTSIDE: u32 = u32::MAX;
 /// What lies on the bedrock and what is told of the ground: both drift with it.
@@ -68,7 +72,7 @@ struct Motion<'a> {
     now: &'a Surface,
     poses_before: &'a [Pose],
     poses: &'a [Pose],
-    rebound: &'a Field<f32>,
+    kept: &'a Field<f32>,
     span_myr: f64,
 }
 
@@ -136,9 +140,10 @@ impl Carved {
     /// which it is being raised over `span_yr`.
     pub fn carry(&mut self, run: &Simulation, params: &PlatesParams, plains: &Plains, span_yr: f64, world: &mut World) {
         let (now, poses) = (Surface::of(run, params), poses(run));
-        let rebound = self.rebound(world.sea_level_m);
+        let sea_m = world.sea_level_m;
+        let kept = self.relief_kept();
         let motion =
-            Motion { now: &now, poses_before: &self.poses, poses: &poses, rebound: &rebound, span_myr: span_yr * 1e-6 };
+            Motion { now: &now, poses_before: &self.poses, poses: &poses, kept: &kept, span_myr: span_yr * 1e-6 };
         let (height, shown_m) = (world.height(), now.shown(&self.reads_m));
         let carried = CARRIED.map(|layer| world.layer(layer));
         let carved = self.carved_on_the_whole(&height, &run.domain);
@@ -152,13 +157,15 @@ impl Carved {
                 let carved_m = linear(&carved, self.surface.at(reads)) as f32;
                 Ground { height_m: height_m + carved_m, ..Ground::default() }
             }
-            Some((from_m, rebound_m)) => {
+            Some((from_m, kept_m)) => {
                 let from = Stencil::at(&height.grid, from_m);
-                let lift_m = shown_m.at(x, y) as f64 - from.read(&self.shown_m) + rebound_m;
+                let (height_m, own_m) = (from.read(&height), f64::from(shown_m.at(x, y)));
+                let raised_m = height_m + own_m - from.read(&self.shown_m) + kept_m;
+                let held_m = raised_m.clamp(own_m.min(sea_m) - BEYOND_M, own_m.max(sea_m) + BEYOND_M);
                 // Cubic reading overshoots by a little; none of these can be less than nothing.
                 let part = |field: &Field<f32>| (from.read(field) as f32).max(0.0);
                 let carried = carried.map(|field| field.map_or(0.0, part));
-                Ground { height_m: from.read(&height) as f32, lift_m: lift_m as f32, carried }
+                Ground { height_m: height_m as f32, lift_m: (held_m - height_m) as f32, carried }
             }
             None => {
                 let height_m = bare(&now, self.reads_at(x, y), world.grid.center_m(x, y), plains);
@@ -175,7 +182,8 @@ impl Carved {
         blurred(&self.on_plates(&over, domain), FLEXURE_M)
     }
 
-    /// Where a cell's ground lay before, on the map, m, and how far it comes back up, m; new sea floor comes from nowhere.
+    /// Where a cell's ground lay before, on the map, m, and what it keeps of what was worn off, m; new sea floor comes from
+    /// nowhere.
     fn origin(&self, x: usize, y: usize, motion: &Motion) -> Option<([f64; 2], f64)> {
         let at = self.reads_at(x, y);
         let q = motion.now.at(at);
@@ -184,8 +192,8 @@ impl Carved {
         }
         let plate = motion.now.plate_at(q) as usize;
         let before = motion.poses_before[plate].to_map(motion.poses[plate].to_body(at));
-        let rebound_m = linear(motion.rebound, self.surface.at(before));
-        Some((self.shown_at(x, y, before - at), rebound_m))
+        let kept_m = linear(motion.kept, self.surface.at(before));
+        Some((self.shown_at(x, y, before - at), kept_m))
     }
 
     fn write(&mut self, ground: &Field<Ground>, span_yr: f64, world: &mut World) {
@@ -227,15 +235,13 @@ impl Carved {
         at.into()
     }
 
-    /// How far the crust comes back up where it was relieved before this step, m.
-    fn rebound(&self, sea_m: f64) -> Field<f32> {
-        let Some(wear) = self.worn.last() else { return Field::filled(self.surface.height.grid, 0.0) };
-        let dry = (crust::CONTINENTAL / crust::MANTLE) as f32;
-        let wet = ((crust::CONTINENTAL - crust::SEA_WATER) / (crust::MANTLE - crust::SEA_WATER)) as f32;
-        let load = Field::from_fn(wear.grid, |x, y| {
-            wear.at(x, y) * if (self.surface.height.at(x, y) as f64) < sea_m { wet } else { dry }
-        });
-        blurred(&load, FLEXURE_M)
+    /// What the ground keeps of what was worn off before this step, m: the plates' own surface has sunk with the thinner
+    /// crust, so that the two together leave the answer of isostasy, spread over the width of the lithosphere's strength.
+    fn relief_kept(&self) -> Field<f32> {
+        match self.worn.last() {
+            Some(wear) => blurred(wear, FLEXURE_M),
+            None => Field::filled(self.surface.height.grid, 0.0),
+        }
     }
 
     /// Means over the tectonic cells of something on the map; where it reads none of a cell, what it shows there.
@@ -294,9 +300,10 @@ impl Simulation {
             for cell in (0..plate.owned.len()).filter(|&cell| plate.owned[cell]).collect::<Vec<_>>() {
                 let under = cell_index(&self.domain, plate.center_m(cell));
                 let Some(under) = under.filter(|&under| self.owners.top[under] as usize == p) else { continue };
-                let old = plate.rock[cell].worn_m;
-                plate.rock[cell].worn_m = old + wear.data[under];
-                self.books.worn_m3 += (plate.rock[cell].worn_m as f64 - old as f64) * area;
+                let rock = &mut plate.rock[cell];
+                let (old, most) = (rock.worn_m, rock.crust_m + rock.added_m - raise::THINNEST_M);
+                rock.worn_m = (old + wear.data[under]).min(most.max(old));
+                self.books.worn_m3 += (rock.worn_m as f64 - old as f64) * area;
             }
         }
     }

@@ -279,10 +279,15 @@ impl Run {
         }
     }
 
-    /// Years since the stage began: its duration in equal steps.
+    /// Years since the stage began; the last step of the engine may be shorter than the others.
     fn time_yr(&self, params: &PlatesParams) -> f64 {
-        let (steps, done) = self.progress();
-        params.duration_myr * 1e6 * (done as f64 / steps as f64)
+        match self {
+            Run::Geologic(run) => run.simulation.time_myr * 1e6,
+            Run::Thesis(run) => {
+                let (steps, done) = run.progress();
+                params.duration_myr * 1e6 * (done as f64 / steps as f64)
+            }
+        }
     }
 
     fn finite(&self) -> bool {

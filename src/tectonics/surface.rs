@@ -74,8 +74,8 @@ impl Surface {
         let mountain = Field::from_fn(grid, |x, y| {
             let i = grid.index(x, y);
             let r = &rock[i];
-            let whole =
-                crust::height_m((r.crust_m + r.added_m) as f64, r.kind as f64, run.time_myr - r.born_myr as f64);
+            let thickness_m = f64::from(r.crust_m + r.added_m - r.worn_m);
+            let whole = crust::height_m(thickness_m, r.kind as f64, run.time_myr - r.born_myr as f64);
             whole as f32 - base.data[i] + r.edifice_m
         });
         // The plates' strength carries short loads: what the crust was at the start shows smoothed, but not below the
