@@ -167,11 +167,9 @@ impl Process for Stage {
         let numbers = [booked.start_m3, booked.made_m3, booked.sunk_m3, booked.pending_m3, booked.worn_m3];
         let blob = steps.to_le_bytes().into_iter().chain(numbers.into_iter().flat_map(f64::to_le_bytes)).collect();
         let mut fields = self.ground.as_ref().map(Ground::save).unwrap_or_default();
-        if let Some(Run::Geologic(run)) = &self.run
-            && let Some((carved, _)) = &run.carved
-        {
-            fields.push((EXPECTED.to_owned(), carved.expected().clone()));
-            fields.extend(carved.worn().iter().map(|worn| (WORN.to_owned(), worn.clone())));
+        if let Some((expected, worn)) = self.shared() {
+            fields.push((EXPECTED.to_owned(), expected.clone()));
+            fields.extend(worn.iter().map(|worn| (WORN.to_owned(), worn.clone())));
         }
         State { fields, blob }
     }
@@ -206,6 +204,15 @@ const EXPECTED: &str = "expected";
 const WORN: &str = "worn";
 
 impl Stage {
+    /// What has to be saved of a map that others carve.
+    fn shared(&self) -> Option<(&Field<f32>, &[Field<f32>])> {
+        match (&self.run, &self.resume) {
+            (Some(Run::Geologic(run)), _) => run.carved.as_ref().map(|(carved, _)| (carved.expected(), carved.worn())),
+            (_, Some(resume)) => resume.shared.as_ref().map(|shared| (&shared.expected, &shared.worn[..])),
+            _ => None,
+        }
+    }
+
     /// Plates that others carve own the whole ground.
     fn check_leading(&self) -> Result<(), ProcessError> {
         let whole = self.placement.blend == Blend::Replace && self.placement.mask.is_none();
@@ -228,17 +235,17 @@ impl Stage {
             }
             PlateStyle::Thesis => Run::Thesis(Box::new(thesis(&self.params, world.grid, context.key)?)),
         };
-        let resume = self.resume.take();
         if let (true, Run::Geologic(run)) = (self.leads, &mut run) {
-            run.share(&self.params, world, context, resume.is_none());
+            run.share(&self.params, world, context, self.resume.is_none());
         }
-        match (resume, &mut run) {
+        match (&self.resume, &mut run) {
             (Some(resume), run) => run.replay(resume, &self.params, context)?,
             (None, Run::Geologic(run)) => {
                 world.ledger.open(context.stage, Matter::Crust, run.simulation.crust_m3());
             }
             (None, Run::Thesis(_)) => {}
         }
+        self.resume = None;
         self.run = Some(run);
         Ok(())
     }
@@ -253,10 +260,9 @@ impl Run {
     }
 
     /// Takes the steps of a saved run again.
-    fn replay(&mut self, resume: Resume, params: &PlatesParams, context: &Context) -> Result<(), ProcessError> {
-        let Resume { steps, booked, shared } = resume;
-        let worn = shared.as_ref().map_or(&[][..], |shared| &shared.worn);
-        for step in 0..steps as usize {
+    fn replay(&mut self, resume: &Resume, params: &PlatesParams, context: &Context) -> Result<(), ProcessError> {
+        let worn = resume.shared.as_ref().map_or(&[][..], |shared| &shared.worn);
+        for step in 0..resume.steps as usize {
             context.check()?;
             if let (Run::Geologic(run), Some(worn)) = (&mut *self, worn.get(step)) {
                 run.simulation.wear(worn);
@@ -264,9 +270,9 @@ impl Run {
             self.advance();
         }
         if let Run::Geologic(run) = self {
-            run.booked = booked;
-            if let (Some((carved, _)), Some(Shared { expected, worn })) = (&mut run.carved, shared) {
-                carved.restore(&run.simulation, params, expected, worn);
+            run.booked = resume.booked;
+            if let (Some((carved, _)), Some(Shared { expected, worn })) = (&mut run.carved, &resume.shared) {
+                carved.restore(&run.simulation, params, expected.clone(), worn.clone());
             }
         }
         Ok(())
