@@ -45,8 +45,8 @@ fn explicit(grid: Grid, value: &[f64], next: &mut [f64], share: f64, open: &[f32
             let flow = |j: usize| face(a, open[j]) as f64 * (value[j] - v);
             v + share * (flow(north + x) + flow(here + west) + flow(here + east) + flow(south + x))
         };
-        for x in 1..width.saturating_sub(1) {
-            out[x] = cell(x, x - 1, x + 1);
+        for (x, out) in out.iter_mut().enumerate().take(width.saturating_sub(1)).skip(1) {
+            *out = cell(x, x - 1, x + 1);
         }
         for x in [0, width - 1] {
             out[x] = cell(x, grid.column(x, -1), grid.column(x, 1));

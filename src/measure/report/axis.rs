@@ -23,7 +23,7 @@ impl Axis {
     }
 
     /// With a range of its own.
-    pub const fn from_to(self, low: f64, high: f64) -> Self {
+    pub const fn spanning(self, low: f64, high: f64) -> Self {
         Self { range: Some([low, high]), ..self }
     }
 }
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn round_numbers_are_marked() {
-        let unit = Scale::of(&Axis::linear("").from_to(0.0, 1.0), [].into_iter(), [0.0, 100.0]);
+        let unit = Scale::of(&Axis::linear("").spanning(0.0, 1.0), [].into_iter(), [0.0, 100.0]);
         assert_eq!(texts(&unit), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(unit.at(0.25), Some(25.0));
         let log = Scale::of(&Axis::log(""), [1e-4, 100.0].into_iter(), [0.0, 100.0]);

@@ -122,8 +122,8 @@ fn hypsometry(surveys: &[&Survey]) -> Option<Figure> {
             in_band("hypsometric_integral").replace(": ", ": integrals ")
         ),
         plot: Plot {
-            x: Axis::linear("share of the area").from_to(0.0, 1.0),
-            y: Axis::linear("share of the relief").from_to(0.0, 1.0),
+            x: Axis::linear("share of the area").spanning(0.0, 1.0),
+            y: Axis::linear("share of the relief").spanning(0.0, 1.0),
             marks,
         },
     })
@@ -238,7 +238,7 @@ fn by_order(
         name,
         title,
         caption: format!("By Strahler's order.{shaded}"),
-        plot: Plot { x: Axis::linear("order").from_to(0.5, most + 0.5), y: Axis::log(label), marks },
+        plot: Plot { x: Axis::linear("order").spanning(0.5, most + 0.5), y: Axis::log(label), marks },
     })
 }
 
@@ -358,8 +358,8 @@ fn slopes(surveys: &[&Survey]) -> Option<Figure> {
         title: "Slopes of the land",
         caption: format!("Share of the land by slope.{shaded}"),
         plot: Plot {
-            x: Axis::linear("slope, degrees").from_to(0.0, steepest),
-            y: Axis::linear("share of the land").from_to(0.0, (1.06 * most).max(0.05)),
+            x: Axis::linear("slope, degrees").spanning(0.0, steepest),
+            y: Axis::linear("share of the land").spanning(0.0, (1.06 * most).max(0.05)),
             marks,
         },
     })
@@ -372,7 +372,7 @@ fn heights(surveys: &[&Survey]) -> Option<Figure> {
     let low = used.iter().copied().fold(f64::INFINITY, f64::min) - 0.5;
     let high = used.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 0.5;
     let most = surveys.iter().flat_map(|s| s.heights.iter().map(|p| p[1])).fold(0.0, f64::max);
-    if !(low < high) {
+    if used.is_empty() {
         return None;
     }
     let marks = match surveys {
@@ -386,8 +386,8 @@ fn heights(surveys: &[&Survey]) -> Option<Figure> {
             "Share of the map by height. Earth has two humps: continents at 0.1 to 0.8 km, ocean floors at −4 to −5 km."
                 .to_owned(),
         plot: Plot {
-            x: Axis::linear("height over the sea, km").from_to(low, high),
-            y: Axis::linear("share of the map").from_to(0.0, 1.06 * most),
+            x: Axis::linear("height over the sea, km").spanning(low, high),
+            y: Axis::linear("share of the map").spanning(0.0, 1.06 * most),
             marks,
         },
     })
