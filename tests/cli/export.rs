@@ -51,7 +51,7 @@ fn bad_requests_leave_nothing() {
     };
     refused(
         &["h.gif"],
-        "h.gif: no format has this ending; there are .png .tif .tiff .exr .asc .r16 .raw .r32 .glb .obj .stl",
+        "h.gif: no format has this ending; there are .png .tif .tiff .exr .asc .r16 .raw .r32 .glb .obj .stl .geojson .svg",
     );
     refused(&["h.png", "--layer", "slop"], "--layer slop: no such layer (did you mean 'slope'?)");
     refused(&["h.png", "--engine", "unral"], "--engine unral: no such engine (did you mean 'unreal'?)");

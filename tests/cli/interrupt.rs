@@ -81,7 +81,7 @@ fn a_resumed_run_keeps_the_timeline_of_the_whole() {
     let recipe = place.run(&["presets", "collision"]).out;
     let peak = "[[stage]]\nkind = \"rmp_peak\"\niterations = 5000\nblend = \"add\"\n";
     place.write("long.toml", format!("{recipe}\n{peak}"));
-    let set = ["--set", "plates.cells=160", "--keep-timeline", "--out", "w"];
+    let set = ["--set", "plates.cells=160", "--set", "rivers.enabled=false", "--keep-timeline", "--out", "w"];
     let arguments = [&["grow", "long.toml", "--size", "300"], &set[..]].concat();
     interrupted(&place, &arguments, Some("1/2 "));
     // The peak is left out, so that it is soon done.

@@ -64,7 +64,7 @@ fn our_own_export_comes_back_without_a_word() {
         place.write("back.toml", format!("[[stage]]\nkind = \"import\"\npath = \"{}\"\n", flags[0]));
         let said = place.run(&["grow", "back.toml", "--out", "back", "--force"]);
         assert_eq!(said.code, 0, "{flags:?}: {}", said.err);
-        assert!(said.err.contains(&format!("as {}.json beside it says", flags[0])), "{}", said.err);
+        assert!(said.err.contains(&format!("{}.json beside it says", flags[0])), "{}", said.err);
         let back = heights(&place, "back");
         assert_eq!((back.grid.width, back.grid.height), (96, 64), "{flags:?}");
         assert!((back.grid.cell_m / truth.grid.cell_m - 1.0).abs() < 1e-9, "{flags:?}");

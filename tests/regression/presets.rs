@@ -26,8 +26,9 @@ fn every_preset_has_its_published_hashes() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/regression/hashes.txt");
     let mut found = format!("# SHA-256 (first 16 digits) of every layer of every preset at {SIZE} x {SIZE}.\n");
     for preset in presets() {
-        let (_, world) = grown(preset, SIZE, &[]);
-        assert_convergence(preset, &world);
+        let (plan, world) = grown(preset, SIZE, &[]);
+        // The map that the plates moved on; a zoom may have gone into it since.
+        assert_convergence(preset, plan.world.grid().extent_m()[0], &world);
         found += &hashes(preset, &world);
     }
     if std::env::var_os("UPDATE_HASHES").is_some_and(|v| v == "1") {
@@ -46,10 +47,10 @@ fn every_preset_has_its_published_hashes() {
 }
 
 /// Plates may close by less than two fifths of the map, and by no more than the preset's description says.
-fn assert_convergence(preset: &Preset, world: &World) {
+fn assert_convergence(preset: &Preset, map_m: f64, world: &World) {
     let Some(table) = world.table("convergence") else { return };
     let closed_km = table.numbers("closed_km").unwrap().iter().fold(0.0f64, |most, &km| most.max(km));
-    let share = closed_km * 1e3 / world.grid.extent_m()[0];
+    let share = closed_km * 1e3 / map_m;
     println!("{}: closed {closed_km:.0} km, {:.1} % of the map", preset.name, share * 100.0);
     assert!(share < 0.4, "{} closes {:.1} % of the map", preset.name, share * 100.0);
     let stated = stated_percent(&preset.summary().1);
