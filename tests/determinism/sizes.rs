@@ -69,8 +69,8 @@ fn every_preset_is_the_same_land_at_another_size() {
 #[test]
 fn a_thumbnail_shows_its_world() {
     for seed in 1..=24 {
-        // A few at full size: a sheet has two dozen, and a world of that size takes half a minute.
-        let full = if seed % 8 == 0 { "1024" } else { "256" };
+        // A sheet has two dozen, and at full size each takes half a minute; one of them is compared with that.
+        let full = if seed == 8 { "1024" } else { "256" };
         let [thumbnail, world] = ["128", full].map(|size| grown("collision", size, Some(seed)));
         assert_same_land(&thumbnail, &world, 0.9, &format!("seed {seed} at 128 and {full}"));
     }
