@@ -147,7 +147,7 @@ impl Rivers {
     /// What each cell sheds: the layer `runoff`, or else `rain`, or else the parameter; and what other maps send in.
     fn climate(&self, world: &World, sea: &[bool]) -> Climate {
         let per_mm = 1e-3 * world.grid.cell_area_m2() / YEAR_S;
-        let layer = Layer::from_name("runoff").and_then(|layer| world.layer(layer)).or(world.layer(Layer::Rain));
+        let layer = world.layer(Layer::Runoff).or(world.layer(Layer::Rain));
         let mm = |i: usize| layer.map_or(self.params.rain_mm_per_yr, |field| (field.data[i] as f64).max(0.0));
         let mut runoff_m3_s: Vec<f64> = (0..sea.len()).map(|i| if sea[i] { 0.0 } else { mm(i) * per_mm }).collect();
         for inflow in inflows(world) {

@@ -117,7 +117,7 @@ impl World {
 
     /// What each cell brings to the rivers. Runoff where a climate tells it, else rain, else a metre a year.
     pub fn sources(&self) -> Sources {
-        let water = Layer::from_name("runoff").and_then(|layer| self.layer(layer)).or(self.layer(Layer::Rain));
+        let water = self.layer(Layer::Runoff).or(self.layer(Layer::Rain));
         let per_mm = 1e-3 * self.grid.cell_area_m2() / SECONDS_PER_YEAR;
         let mut sources = Sources {
             area_m2: vec![self.grid.cell_area_m2(); self.grid.cells()],
