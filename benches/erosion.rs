@@ -1,10 +1,9 @@
 //! Rivers over a raster: routing alone, and a whole step of stream power (route, erode, diffuse), on young ground full of
 //! pits and on ground that rivers have shaped; with what memory gives beside it.
 
-use std::hint::black_box;
+mod memory;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use rayon::prelude::*;
 use upthrust::{
     erosion::stream_power::{Carver, Forcing, Law, Rim, StreamPowerParams},
     flow::Router,
@@ -68,26 +67,5 @@ fn steps(c: &mut Criterion) {
     group.finish();
 }
 
-/// McCalpin's triad, `a = b + s·c`, on arrays that no cache holds: what memory gives, to hold the others against.
-fn triad(c: &mut Criterion) {
-    const N: usize = 1 << 25;
-    let mut group = c.benchmark_group("memory");
-    group.sample_size(10);
-    group.throughput(Throughput::Bytes(3 * 4 * N as u64));
-    let (mut a, b, x) = (vec![0.0f32; N], vec![1.0f32; N], vec![2.0f32; N]);
-    group.bench_function("STREAM triad", |bench| {
-        bench.iter(|| {
-            let parts = a.par_chunks_mut(1 << 16).zip(b.par_chunks(1 << 16)).zip(x.par_chunks(1 << 16));
-            parts.for_each(|((a, b), x)| {
-                for ((a, b), x) in a.iter_mut().zip(b).zip(x) {
-                    *a = b + 3.0 * x;
-                }
-            });
-        })
-    });
-    black_box(&a);
-    group.finish();
-}
-
-criterion_group!(benches, steps, triad);
+criterion_group!(benches, steps, memory::triad);
 criterion_main!(benches);

@@ -1,4 +1,5 @@
-//! The reference that tests hold the lake graph against. Priority-flood: fills every depression to its spill point and notes which way it spills (Barnes, Lehman and Mulla 2014).
+//! The reference that tests hold the lake graph against: priority-flood, which fills every depression to its spill point
+//! (Barnes, Lehman and Mulla 2014).
 
 use std::{
     cmp::Ordering,
