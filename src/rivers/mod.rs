@@ -4,7 +4,6 @@
 //! |---|---|
 //! | `params` | the parameters |
 //! | `hollows` | which hollows are lakes; how the others are drained or filled |
-//! | `inflow` | rivers that come from beyond the map |
 //! | `waters` | ways, lakes, discharge, Strahler's order, basins |
 //! | `bed` | width and depth of rivers, and their beds |
 //! | `course` | rivers as smooth lines |
@@ -18,7 +17,6 @@
 mod bed;
 mod course;
 mod hollows;
-mod inflow;
 mod params;
 mod stage;
 mod tables;

@@ -5,12 +5,11 @@ use super::{
     bed::{self, Beds},
     course::Network,
     hollows::{Hollow, fill, hollows, least_fall_m, level, tilt_plains},
-    inflow::{inflows, open_gates},
     tables,
     waters::{Climate, Waters},
 };
 use crate::{
-    flow::{Drainage, outlets},
+    flow::{Drainage, outlets_but},
     grid::Field,
     noise::Fbm,
     process::{Context, Placement, Process, ProcessError, State, Step},
@@ -94,7 +93,7 @@ impl Rivers {
         let (grid, sea_m, params) = (world.grid, world.sea_level_m, &self.params);
         let height = world.height();
         let sea: Vec<bool> = height.data.iter().map(|&h| (h as f64) < sea_m).collect();
-        let outlet = open_gates(grid, outlets(&height, sea_m), &inflows(world), &sea);
+        let outlet = outlets_but(&height, sea_m, &world.inflow_gates());
         let mut z: Vec<f64> = height.data.iter().map(|&h| h as f64).collect();
 
         // Dry land is higher than the sea, be it by a hair.
@@ -150,7 +149,7 @@ impl Rivers {
         let layer = world.layer(Layer::Runoff).or(world.layer(Layer::Rain));
         let mm = |i: usize| layer.map_or(self.params.rain_mm_per_yr, |field| (field.data[i] as f64).max(0.0));
         let mut runoff_m3_s: Vec<f64> = (0..sea.len()).map(|i| if sea[i] { 0.0 } else { mm(i) * per_mm }).collect();
-        for inflow in inflows(world) {
+        for inflow in world.inflows() {
             if !sea[inflow.cell] {
                 runoff_m3_s[inflow.cell] += inflow.discharge_m3_s;
             }

@@ -7,7 +7,7 @@ use crate::{
     grid::{Edges, Field, Grid},
     noise::Key,
     process::{Context, Placement},
-    world::{Layer, Matter, Table, World},
+    world::{Inflow, Layer, Matter, World},
 };
 
 /// Rough land: an island with hills and hollows, or the same without a sea.
@@ -174,11 +174,7 @@ fn a_river_wider_than_a_cell_has_a_bed_of_its_width() {
     let mut world = World::new(grid, -1e3);
     world
         .set_layer(Layer::Bedrock, Field::from_fn(grid, |x, y| 100.0 - 0.1 * x as f32 + 0.2 * (y as f32 - 30.0).abs()));
-    world.set_table(Table::new("inflows").number("x_km", "km", vec![0.005]).number("y_km", "km", vec![0.305]).number(
-        "discharge_m3_s",
-        "m3/s",
-        vec![60.0],
-    ));
+    world.set_inflows(&[Inflow { cell: grid.index(0, 30), area_m2: 0.0, discharge_m3_s: 60.0, z_m: 0.0 }]);
     run(&mut world, RiversParams { least_discharge_m3_s: Some(5.0), bankfull_ratio: 1.0, ..fine() });
     keep_the_rules(&world);
     assert_eq!(pits(&world), 0);
@@ -281,12 +277,7 @@ fn what_flows_in_over_the_rim_goes_on() {
     run(&mut world, fine());
     let alone = world.layer(Layer::Discharge).unwrap().data.iter().fold(0.0f32, |a, &b| a.max(b));
     let mut fed = rough(64, Edges::Open, -1e4);
-    fed.set_table(
-        Table::new("inflows")
-            .number("x_km", "km", vec![2.0 * high as f64 + 1.0])
-            .number("y_km", "km", vec![1.0])
-            .number("discharge_m3_s", "m3/s", vec![5000.0]),
-    );
+    fed.set_inflows(&[Inflow { cell: high, area_m2: 0.0, discharge_m3_s: 5000.0, z_m: 0.0 }]);
     run(&mut fed, fine());
     keep_the_rules(&fed);
     let most = fed.layer(Layer::Discharge).unwrap().data.iter().fold(0.0f32, |a, &b| a.max(b));
