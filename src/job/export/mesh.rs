@@ -40,20 +40,7 @@ pub fn export(request: &ExportRequest, format: MeshFormat) -> Result<Exported, J
 }
 
 fn check(request: &ExportRequest) -> Result<(), JobError> {
-    let others = [
-        ("--layer", request.layer != Layer::Height.name()),
-        ("--engine", request.engine.is_some()),
-        ("--range", request.range.is_some()),
-        ("--tiles", request.tiles.is_some()),
-        ("--bits", request.bits.is_some()),
-        ("--big-endian", request.big_endian),
-        ("--flip", request.south_first),
-        ("--normal-y", request.green.is_some()),
-        ("--contours", request.contours_m.is_some()),
-    ];
-    if let Some((flag, _)) = others.iter().find(|(_, given)| *given) {
-        return refuse(format!("{}: {flag} does not go with meshes", request.file.display()));
-    }
+    request.refuse_flags_but(&["--size"], "meshes")?;
     let [fewest, most] = MESH_SIDES;
     match request.size {
         Some(size) if !(fewest..=most).contains(&size) => {

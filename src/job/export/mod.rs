@@ -14,10 +14,13 @@ mod vector;
 
 use std::path::PathBuf;
 
-use crate::export::{
-    self, Green,
-    engine::{COARSE_M, Engine, Part, zooms},
-    raster::Window,
+use crate::{
+    export::{
+        self, Green,
+        engine::{COARSE_M, Engine, Part, zooms},
+        raster::Window,
+    },
+    world::Layer,
 };
 
 use super::{JobError, open_world};
@@ -56,6 +59,28 @@ pub struct ExportRequest {
     pub contours_m: Option<f64>,
     /// Replace files that are there.
     pub force: bool,
+}
+
+impl ExportRequest {
+    /// Refuses what was asked for besides world, file, window and `allowed`, since it does not go with such files.
+    fn refuse_flags_but(&self, allowed: &[&str], files: &str) -> Result<(), JobError> {
+        let given = [
+            ("--layer", self.layer != Layer::Height.name()),
+            ("--engine", self.engine.is_some()),
+            ("--size", self.size.is_some()),
+            ("--range", self.range.is_some()),
+            ("--tiles", self.tiles.is_some()),
+            ("--bits", self.bits.is_some()),
+            ("--big-endian", self.big_endian),
+            ("--flip", self.south_first),
+            ("--normal-y", self.green.is_some()),
+            ("--contours", self.contours_m.is_some()),
+        ];
+        match given.iter().find(|(flag, given)| *given && !allowed.contains(flag)) {
+            Some((flag, _)) => order::refuse(format!("{}: {flag} does not go with {files}", self.file.display())),
+            None => Ok(()),
+        }
+    }
 }
 
 /// What was exported.

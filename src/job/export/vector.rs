@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::{
     export::{VECTOR_FORMATS, VectorFormat, VectorOptions, write_vector},
-    world::{Layer, World},
+    world::World,
 };
 
 use super::{ExportRequest, Exported, JobError, names, open_world, order::refuse, place::check_window};
@@ -20,7 +20,7 @@ pub fn format(file: &Path) -> Option<VectorFormat> {
 
 /// Writes a vector map.
 pub fn export(request: &ExportRequest, format: VectorFormat) -> Result<Exported, JobError> {
-    check(request)?;
+    request.refuse_flags_but(&["--contours"], "vector maps")?;
     let (world, provenance) = open_world(&request.world)?;
     if let Some(window) = request.window {
         check_window(window, &world)?;
@@ -35,24 +35,6 @@ pub fn export(request: &ExportRequest, format: VectorFormat) -> Result<Exported,
         notes.push("this world has no rivers; a stage 'rivers' at the end of its recipe finds them".to_owned());
     }
     Ok(Exported { files: vec![file], notes })
-}
-
-fn check(request: &ExportRequest) -> Result<(), JobError> {
-    let others = [
-        ("--layer", request.layer != Layer::Height.name()),
-        ("--engine", request.engine.is_some()),
-        ("--size", request.size.is_some()),
-        ("--range", request.range.is_some()),
-        ("--tiles", request.tiles.is_some()),
-        ("--bits", request.bits.is_some()),
-        ("--big-endian", request.big_endian),
-        ("--flip", request.south_first),
-        ("--normal-y", request.green.is_some()),
-    ];
-    match others.iter().find(|(_, given)| *given) {
-        Some((flag, _)) => refuse(format!("{}: {flag} does not go with vector maps", request.file.display())),
-        None => Ok(()),
-    }
 }
 
 fn check_contours(contours_m: Option<f64>, world: &World) -> Result<(), JobError> {
