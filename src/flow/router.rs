@@ -4,6 +4,8 @@
 //! strips in parallel; the others, the trunks, one after another: after the strips on the way down, before them on the
 //! way up. The cut depends on the raster alone, so sums have one order on any number of threads.
 
+use std::ops::AddAssign;
+
 use rayon::prelude::*;
 
 use super::{
@@ -102,9 +104,9 @@ impl Router {
 
     /// From the sources down: `give` tells what a cell hands to its receiver, once all above it have given; it may
     /// change what the cell keeps. Outlets keep all.
-    pub fn descend(&self, value: &mut [f64], give: impl Fn(usize, &mut f64) -> f64 + Sync) {
+    pub fn descend<T: Copy + Send + AddAssign>(&self, value: &mut [T], give: impl Fn(usize, &mut T) -> T + Sync) {
         let parts = self.strips.par_iter().zip(value.par_chunks_mut(self.strip_cells)).enumerate();
-        let carried: Vec<Vec<f64>> = parts
+        let carried: Vec<Vec<T>> = parts
             .map(|(s, (strip, own))| {
                 let begin = s * self.strip_cells;
                 let mut carried = Vec::with_capacity(strip.leaving.len());

@@ -18,18 +18,13 @@ use super::{
     Rim,
     base::{Base, BaseLevel},
     coast::{self, Coast},
+    deposition::{Deposition, Slopes},
     law::settle,
 };
 use crate::erosion::diffusion::diffuse;
 
 /// Rain for which discharge equals catchment area, so that erodibility means the same for both; mm/yr.
 const REFERENCE_RAIN_MM_PER_YR: f64 = 1000.0;
-/// Rounds after which deposition has to have settled.
-const MOST_ROUNDS: usize = 30;
-/// Change of height in a round below which it has, as a share of the step's greatest: less than its length leaves open.
-const SETTLED_SHARE: f64 = 0.01;
-/// And the change below which it has in any case, m.
-const SETTLED_M: f64 = 1e-3;
 
 /// Constants of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,8 +93,7 @@ pub struct Carver {
     surface_m: Vec<f64>,
     /// Sediment on its way; where it ends, what was laid down.
     load_m: Vec<f64>,
-    /// What rivers laid down in the last step, m/yr: the first guess of the next; empty without deposition.
-    laid_m_per_yr: Vec<f32>,
+    deposition: Deposition,
     coast: Coast,
 }
 
@@ -115,7 +109,7 @@ impl Carver {
             raised_m: zeros(),
             surface_m: zeros(),
             load_m: zeros(),
-            laid_m_per_yr: Vec::new(),
+            deposition: Deposition::default(),
             coast: Coast::default(),
         }
     }
@@ -123,16 +117,6 @@ impl Carver {
     /// The routing of the last step.
     pub fn router(&self) -> &Router {
         &self.router
-    }
-
-    /// What rivers laid down in the last step, m/yr; the next one begins with it.
-    pub fn laid_m_per_yr(&self) -> &[f32] {
-        &self.laid_m_per_yr
-    }
-
-    /// Takes up what rivers laid down in the last step of a saved run, m/yr.
-    pub fn remember_laid(&mut self, laid_m_per_yr: Vec<f32>) {
-        self.laid_m_per_yr = laid_m_per_yr;
     }
 
     /// Ground of the last step after uplift alone, m.
@@ -230,13 +214,15 @@ impl Carver {
 
     /// The network from its outlets up: `height_m` becomes the eroded ground, `surface_m` that with the water on it.
     fn erode(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64], years: f64) {
-        if law.deposition > 0.0 {
-            return self.erode_and_deposit(law, forcing, height_m, years);
-        }
         self.surface_m.copy_from_slice(&self.raised_m);
         self.set_base(law, forcing, years);
         let (router, ratio) = (&self.router, &self.ratio);
-        let steepest = self.steepest(law);
+        let steepest = LENGTHS.map(|cells| cells * self.grid().cell_m * law.steepest);
+        if law.deposition > 0.0 {
+            let slopes = Slopes { ratio, exponent: law.slope_exponent, steepest_m: steepest };
+            self.deposition.settle(router, &slopes, law.deposition, &self.raised_m, &mut self.surface_m, height_m);
+            return;
+        }
         let way = router.ways();
         if law.slope_exponent == 1.0 {
             router.climb(&mut self.surface_m, |i, raised, below| {
@@ -251,11 +237,6 @@ impl Carver {
         }
         let ground = height_m.par_iter_mut().zip(&self.surface_m).zip(&self.raised_m);
         ground.for_each(|((z, &surface), &raised)| *z = surface.min(raised));
-    }
-
-    /// The greatest drop to a receiver for each way, m.
-    fn steepest(&self, law: &Law) -> [f64; 8] {
-        LENGTHS.map(|cells| cells * self.grid().cell_m * law.steepest)
     }
 
     /// Levels of the outlets.
@@ -283,50 +264,6 @@ impl Carver {
                 Base::Fixed => self.raised_m[i].max(sea_m),
             };
         }
-    }
-
-    /// Erosion with deposition of the river's load, `G > 0`: the load of one round is laid down in the next, until heights
-    /// stay (Yuan and others 2019).
-    fn erode_and_deposit(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64], years: f64) {
-        let mut laid = vec![0.0; height_m.len()];
-        for (laid, &rate) in laid.iter_mut().zip(&self.laid_m_per_yr) {
-            *laid = f64::from(rate) * years;
-        }
-        let mut cells = vec![1.0; height_m.len()];
-        self.router.descend(&mut cells, |_, count| *count);
-        height_m.copy_from_slice(&self.raised_m);
-        let mut enough_m = 0.0f64;
-        for _ in 0..MOST_ROUNDS {
-            let raised = self.surface_m.par_iter_mut().zip(&self.raised_m).zip(&laid);
-            raised.for_each(|((s, &raised), &laid)| *s = raised + laid);
-            self.set_base(law, forcing, years);
-            let (router, ratio) = (&self.router, &self.ratio);
-            let (way, steepest) = (router.ways(), self.steepest(law));
-            router.climb(&mut self.surface_m, |i, raised, below| {
-                let settled = settle(raised, below, ratio[i], law.slope_exponent);
-                below + (settled - below).clamp(0.0, steepest[way[i] as usize & 7])
-            });
-            let raised = &self.raised_m;
-            let changes =
-                height_m.par_iter_mut().zip(&self.surface_m).zip(&laid).enumerate().map(|(i, ((z, &s), &laid))| {
-                    let ground = s.min(raised[i] + laid);
-                    (ground - std::mem::replace(z, ground)).abs()
-                });
-            let change = changes.reduce(|| 0.0, f64::max);
-            if change < enough_m.max(SETTLED_M) {
-                break;
-            }
-            enough_m = enough_m.max(SETTLED_SHARE * change);
-            self.gather_load(height_m);
-            // What came from above, without the cell's own, spread over its catchment.
-            let (load, surface, way) = (&self.load_m, &self.surface_m, self.router.ways());
-            laid.par_iter_mut().enumerate().for_each(|(i, laid)| {
-                let dry = surface[i] <= height_m[i] && way[i] != ROOT;
-                *laid = if dry { (law.deposition / cells[i]).min(1.0) * load[i].max(0.0) } else { 0.0 };
-            });
-        }
-        self.laid_m_per_yr.clear();
-        self.laid_m_per_yr.extend(laid.iter().map(|laid| (laid / years) as f32));
     }
 
     /// Carries what was eroded down the network. Afterwards `load_m` is, at an outlet, all that came; under a lake, what

@@ -3,6 +3,7 @@
 mod base;
 mod carver;
 mod coast;
+mod deposition;
 mod law;
 mod solver;
 #[cfg(test)]

@@ -39,10 +39,7 @@ impl Solver {
     /// What is to be saved beside the world: the part of heights that its layers cannot hold, and the mask.
     pub fn save(&self) -> Vec<(String, Field<f32>)> {
         let mask = self.mask.iter().map(|mask| ("mask".to_owned(), mask.clone()));
-        let (rest, laid) = (self.column.rest(), self.carver.laid_m_per_yr());
-        let laid = Field { grid: rest.grid, data: laid.to_vec() };
-        let laid = (!laid.data.is_empty()).then(|| ("laid".to_owned(), laid));
-        std::iter::once(("rest".to_owned(), rest.clone())).chain(laid).chain(mask).collect()
+        std::iter::once(("rest".to_owned(), self.column.rest().clone())).chain(mask).collect()
     }
 
     /// The solver from what was saved; `None` where that is not whole.
@@ -50,9 +47,7 @@ impl Solver {
         let field = |wanted: &str| fields.iter().find(|(name, _)| name == wanted).map(|(_, field)| field.clone());
         let rest = field("rest")?;
         let world = World::new(rest.grid, 0.0);
-        let mut solver = Self { column: Column::restored(rest), ..Self::new(params, &world, field("mask")) };
-        solver.carver.remember_laid(field("laid").map(|laid| laid.data).unwrap_or_default());
-        Some(solver)
+        Some(Self { column: Column::restored(rest), ..Self::new(params, &world, field("mask")) })
     }
 
     /// Goes on by `span_yr`, in equal steps of at most the one asked for, and books under `stage`. Reads the layers
