@@ -129,6 +129,14 @@ impl Water {
     }
 }
 
+/// What flows into a row's cells, 1/s: from the cell before, down the wind, and from the rows beside it, each with where
+/// it begins in the raster; none for the rim.
+#[derive(Clone, Copy, Debug)]
+struct Inflow {
+    along: f64,
+    beside: [(f64, Option<usize>); 2],
+}
+
 impl<'a> Air<'a> {
     /// The air over the ground, under the zones' winds turned clockwise by an angle.
     pub fn over(below: &'a Below, habits: Habits, turned_deg: f64) -> Self {
@@ -184,20 +192,23 @@ impl<'a> Air<'a> {
         let mut crest: Vec<f64> = height.iter().map(|&h| h as f64).collect();
         let laps = if self.grid.edges == Edges::Wrap { 2 } else { 1 };
         for &y in (0..laps).flat_map(|_| &self.order) {
+            let flow = self.inflow(y);
+            let inflow = flow.along + flow.beside.iter().map(|(rate, _)| rate).sum::<f64>();
+            if inflow <= 0.0 {
+                continue;
+            }
+            let speed = libm::hypot(self.east[y], 0.5 * (self.south[y] + self.south[y + 1])).max(1e-9);
+            let kept = libm::exp(-speed / (inflow * self.habits.shadow_m));
+            let mut behind = None;
             for x in self.columns(y).chain(self.columns(y).filter(|_| laps > 1)) {
-                let (mut sum, mut inflow) = (0.0, 0.0);
-                for (rate, from) in self.inflows(x, y) {
-                    sum += rate * from.map_or(height[self.grid.index(x, y)] as f64, |j| crest[j]);
-                    inflow += rate;
+                let i = y * self.grid.width + x;
+                let own = height[i] as f64;
+                let mut sum = flow.along * behind.unwrap_or(own);
+                for (rate, row) in flow.beside {
+                    sum += rate * row.map_or(own, |row| crest[row + x]);
                 }
-                if inflow <= 0.0 {
-                    continue;
-                }
-                let i = self.grid.index(x, y);
-                let (own, before) = (height[i] as f64, sum / inflow);
-                let speed = libm::hypot(self.east[y], 0.5 * (self.south[y] + self.south[y + 1])).max(1e-9);
-                let kept = libm::exp(-speed / (inflow * self.habits.shadow_m));
-                crest[i] = own.max(own + (before - own) * kept);
+                crest[i] = own.max(own + (sum / inflow - own) * kept);
+                behind = Some(crest[i]);
             }
         }
         crest.iter().zip(height).map(|(crest, &own)| crest - own as f64).collect()
@@ -209,20 +220,18 @@ impl<'a> Air<'a> {
         (0..width).map(move |x| if back { width - 1 - x } else { x })
     }
 
-    /// What flows into a cell: rates, 1/s, and from which cell; none for the rim.
-    fn inflows(&self, x: usize, y: usize) -> [(f64, Option<usize>); 4] {
+    /// What flows into the cells of a row.
+    fn inflow(&self, y: usize) -> Inflow {
         let grid = &self.grid;
-        let wrap = grid.edges == Edges::Wrap;
         let per_m = 1.0 / grid.cell_m;
-        let from = |inside: bool, dx: isize, dy: isize| {
-            (inside || wrap).then(|| grid.index(grid.column(x, dx), grid.row(y, dy)))
-        };
-        [
-            (self.east[y].max(0.0) * per_m, from(x > 0, -1, 0)),
-            ((-self.east[y]).max(0.0) * per_m, from(x + 1 < grid.width, 1, 0)),
-            (self.south[y].max(0.0) * per_m, from(y > 0, 0, -1)),
-            ((-self.south[y + 1]).max(0.0) * per_m, from(y + 1 < grid.height, 0, 1)),
-        ]
+        let row = |inside: bool, dy: isize| (inside || grid.edges == Edges::Wrap).then(|| grid.row(y, dy) * grid.width);
+        Inflow {
+            along: self.east[y].abs() * per_m,
+            beside: [
+                (self.south[y].max(0.0) * per_m, row(y > 0, -1)),
+                ((-self.south[y + 1]).max(0.0) * per_m, row(y + 1 < grid.height, 1)),
+            ],
+        }
     }
 
     fn outflow(&self, y: usize) -> f64 {
@@ -282,26 +291,25 @@ impl<'a> Air<'a> {
 
     /// Solves a row down the wind; `entry` is what flows into its first cell along the row, if it is not the rim's.
     fn sweep(&mut self, y: usize, entry: Option<Water>) {
-        let (beyond, outflow) = (self.beyond(y), self.outflow(y));
+        let (beyond, outflow, flow) = (self.beyond(y), self.outflow(y), self.inflow(y));
         let supply = saturation_mm(self.below.zones[y].sea_degc);
         let falls = 1.0 / self.habits.delay_s;
-        let mut entry = entry;
+        let mut behind = entry.unwrap_or(beyond);
         for x in self.columns(y) {
-            let inflows = self.inflows(x, y);
-            let mut come = Water::default();
-            for (side, (rate, from)) in inflows.into_iter().enumerate().filter(|(_, (rate, _))| *rate > 0.0) {
-                let own = from.map_or(beyond, |j| self.cells[j].water);
-                come = come.plus(if side < 2 { entry.take().unwrap_or(own) } else { own }, rate);
+            let mut come = Water::default().plus(behind, flow.along);
+            for (rate, row) in flow.beside {
+                come = come.plus(row.map_or(beyond, |row| self.cells[row + x].water), rate);
             }
             let cell = &mut self.cells[y * self.grid.width + x];
             let Cell { rain_out, cloud_up, exchange, recycled, .. } = *cell;
             let (back, source) = (cloud_up + recycled * falls, come.vapour + exchange * supply);
             let (vapour_out, cloud_out) = (outflow + rain_out + exchange, outflow + falls + cloud_up);
-            let determinant = vapour_out * cloud_out - back * rain_out;
-            cell.water = Water {
-                vapour: (cloud_out * source + back * come.cloud) / determinant,
-                cloud: (rain_out * source + vapour_out * come.cloud) / determinant,
+            let per = 1.0 / (vapour_out * cloud_out - back * rain_out);
+            behind = Water {
+                vapour: (cloud_out * source + back * come.cloud) * per,
+                cloud: (rain_out * source + vapour_out * come.cloud) * per,
             };
+            cell.water = behind;
         }
     }
 
@@ -328,7 +336,7 @@ impl<'a> Air<'a> {
         let all = |water: Water| water.vapour + water.cloud;
         let mut budget = Budget::default();
         for y in 0..grid.height {
-            let supply = saturation_mm(self.below.zones[y].sea_degc);
+            let (supply, flow) = (saturation_mm(self.below.zones[y].sea_degc), self.inflow(y));
             for x in 0..grid.width {
                 let cell = &self.cells[grid.index(x, y)];
                 budget.from_sea += cell.exchange * (supply - cell.water.vapour) * area_m2;
@@ -336,8 +344,10 @@ impl<'a> Air<'a> {
                 if grid.edges == Edges::Wrap {
                     continue;
                 }
-                let open = self.inflows(x, y).into_iter().filter(|(_, from)| from.is_none());
-                budget.from_rim += open.map(|(rate, _)| rate * all(self.beyond(y)) * area_m2).sum::<f64>();
+                let first = if self.east[y] < 0.0 { grid.width - 1 } else { 0 };
+                let mut open = if x == first { flow.along } else { 0.0 };
+                open += flow.beside.iter().filter(|(_, row)| row.is_none()).map(|(rate, _)| rate).sum::<f64>();
+                budget.from_rim += open * all(self.beyond(y)) * area_m2;
                 let mut out = 0.0;
                 out += if x == 0 { (-self.east[y]).max(0.0) } else { 0.0 };
                 out += if x + 1 == grid.width { self.east[y].max(0.0) } else { 0.0 };

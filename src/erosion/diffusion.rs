@@ -5,7 +5,7 @@
 //! first, then columns (backward Euler, split by direction: stable for any step, never beyond the highest and the lowest).
 //! Nothing crosses the rim; an implicit line does not wrap.
 
-use crate::grid::{Edges, Grid, for_each_row};
+use crate::grid::{Edges, Grid, for_each_row, transposed};
 
 /// Most of `κ·t / cell²` in an explicit step.
 const EXPLICIT: f64 = 0.2;
@@ -58,10 +58,10 @@ fn implicit(grid: Grid, value: &mut Vec<f64>, share: f64, open: &[f32]) {
     let flat = Grid { edges: Edges::Open, ..grid };
     let turned = Grid { width: flat.height, height: flat.width, ..flat };
     solve_rows(flat, value, share, open);
-    let mut columns = transposed(flat, value);
-    let open = transposed(flat, open);
+    let mut columns = transposed(value, flat.width, flat.height);
+    let open = transposed(open, flat.width, flat.height);
     solve_rows(turned, &mut columns, share, &open);
-    *value = transposed(turned, &columns);
+    *value = transposed(&columns, turned.width, turned.height);
 }
 
 /// Thomas's algorithm on every row.
@@ -83,24 +83,6 @@ fn solve_rows(grid: Grid, value: &mut [f64], share: f64, open: &[f32]) {
             row[x] += factor[x] * row[x + 1];
         }
     });
-}
-
-/// Columns as rows.
-fn transposed<T: Copy + Default + Send + Sync>(grid: Grid, data: &[T]) -> Vec<T> {
-    /// Cells a side of the blocks that are turned at once, so that memory is read in whole lines.
-    const BLOCK: usize = 16;
-    use rayon::prelude::*;
-    let mut turned = vec![T::default(); data.len()];
-    turned.par_chunks_mut((BLOCK * grid.height).max(1)).enumerate().for_each(|(block, out)| {
-        let columns = out.len() / grid.height;
-        for y in 0..grid.height {
-            let row = &data[y * grid.width + block * BLOCK..][..columns];
-            for (x, &v) in row.iter().enumerate() {
-                out[x * grid.height + y] = v;
-            }
-        }
-    });
-    turned
 }
 
 #[cfg(test)]

@@ -15,11 +15,12 @@ pub fn blur(field: &Field<f32>, sigma_px: f64) -> Field<f32> {
     Field { grid: field.grid, data: transposed(&turned, h, w) }
 }
 
-fn transposed(data: &[f32], w: usize, h: usize) -> Vec<f32> {
+/// The columns of a raster of `w` by `h` cells as rows.
+pub fn transposed<T: Copy + Default + Send + Sync>(data: &[T], w: usize, h: usize) -> Vec<T> {
     // Several columns at a time, so that every line of memory is read once.
     const COLUMNS: usize = 16;
-    let mut out = vec![0.0; data.len()];
-    out.par_chunks_mut(COLUMNS * h).enumerate().for_each(|(block, columns)| {
+    let mut out = vec![T::default(); data.len()];
+    out.par_chunks_mut((COLUMNS * h).max(1)).enumerate().for_each(|(block, columns)| {
         let wide = columns.len() / h;
         for y in 0..h {
             for (i, &v) in data[y * w + block * COLUMNS..][..wide].iter().enumerate() {

@@ -14,7 +14,7 @@ mod parallel;
 mod resample;
 mod sample;
 
-pub use blur::blur;
+pub use blur::{blur, transposed};
 pub use contour::{Contour, contour_lines, contour_rings};
 pub use distance::{Nearest, nearest_feature};
 pub use field::Field;

@@ -57,6 +57,26 @@ impl Corners {
         Self { columns, rows, across, down }
     }
 
+    /// Row-major indices of the four cells: the northern two from west to east, then the southern two.
+    #[inline]
+    pub fn cells(&self, grid: &Grid) -> [usize; 4] {
+        let ([west, east], [north, south]) = (self.columns, self.rows);
+        [(west, north), (east, north), (west, south), (east, south)].map(|(x, y)| grid.index(x, y))
+    }
+
+    /// Weights of [`Self::cells`].
+    #[inline]
+    pub fn weights(&self) -> [f64; 4] {
+        let (a, d) = (self.across, self.down);
+        [(1.0 - a) * (1.0 - d), a * (1.0 - d), (1.0 - a) * d, a * d]
+    }
+
+    /// The one of [`Self::cells`] that holds the point.
+    #[inline]
+    pub fn holder(&self) -> usize {
+        usize::from(self.across >= 0.5) + 2 * usize::from(self.down >= 0.5)
+    }
+
     /// The value of a field there.
     #[inline]
     pub fn read(&self, field: &Field<f32>) -> f64 {

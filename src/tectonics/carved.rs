@@ -10,7 +10,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::{
-    grid::{Corners, Field, Grid, Stencil, cubic, linear},
+    grid::{Corners, Field, Grid, Stencil, blur, cubic, linear},
     world::{Layer, World},
 };
 
@@ -21,7 +21,7 @@ use super::{
     params::PlatesParams,
     raise,
     simulation::Simulation,
-    surface::{Plains, Surface, blurred},
+    surface::{Plains, Surface},
     warp::Warp,
 };
 
@@ -70,10 +70,29 @@ struct Ground {
 /// Where the plates were before a step, and where they are.
 struct Motion<'a> {
     now: &'a Surface,
-    poses_before: &'a [Pose],
-    poses: &'a [Pose],
+    /// Of each plate, from where it is to where it was.
+    back: Vec<Back>,
     kept: &'a Field<f32>,
     span_myr: f64,
+}
+
+/// A rigid motion: a turn, then a shift, m.
+struct Back {
+    turn: DVec2,
+    by_m: DVec2,
+}
+
+impl Back {
+    /// From a pose to the one before it.
+    fn between(now: &Pose, before: &Pose) -> Self {
+        let turn = before.turn.rotate(DVec2::new(now.turn.x, -now.turn.y));
+        Self { turn, by_m: before.at_m - turn.rotate(now.at_m) }
+    }
+
+    #[inline]
+    fn apply(&self, at_m: DVec2) -> DVec2 {
+        self.turn.rotate(at_m) + self.by_m
+    }
 }
 
 impl Carved {
@@ -142,8 +161,8 @@ impl Carved {
         let (now, poses) = (Surface::of(run, params), poses(run));
         let sea_m = world.sea_level_m;
         let kept = self.relief_kept();
-        let motion =
-            Motion { now: &now, poses_before: &self.poses, poses: &poses, kept: &kept, span_myr: span_yr * 1e-6 };
+        let back = poses.iter().zip(&self.poses).map(|(now, before)| Back::between(now, before)).collect();
+        let motion = Motion { now: &now, back, kept: &kept, span_myr: span_yr * 1e-6 };
         let (height, shown_m) = (world.height(), now.shown(&self.reads_m));
         let carried = CARRIED.map(|layer| world.layer(layer));
         let carved = self.carved_on_the_whole(&height, &run.domain);
@@ -179,19 +198,18 @@ impl Carved {
     /// How much higher the ground is than the plates' own surface, without its valleys, on the tectonic cells, m.
     fn carved_on_the_whole(&self, height: &Field<f32>, domain: &Domain) -> Field<f32> {
         let over = Field::from_fn(height.grid, |x, y| height.at(x, y) - self.shown_m.at(x, y));
-        blurred(&self.on_plates(&over, domain), FLEXURE_M)
+        blur(&self.on_plates(&over, domain), FLEXURE_M / domain.cell_m())
     }
 
     /// Where a cell's ground lay before, on the map, m, and what it keeps of what was worn off, m; new sea floor comes from
     /// nowhere.
     fn origin(&self, x: usize, y: usize, motion: &Motion) -> Option<([f64; 2], f64)> {
         let at = self.reads_at(x, y);
-        let q = motion.now.at(at);
-        if motion.now.is_newer(q, motion.span_myr) {
+        let here = Corners::at(&motion.now.height.grid, motion.now.at(at));
+        if motion.now.is_newer(&here, motion.span_myr) {
             return None;
         }
-        let plate = motion.now.plate_at(q) as usize;
-        let before = motion.poses_before[plate].to_map(motion.poses[plate].to_body(at));
+        let before = motion.back[motion.now.plate_at(&here) as usize].apply(at);
         let kept_m = linear(motion.kept, self.surface.at(before));
         Some((self.shown_at(x, y, before - at), kept_m))
     }
@@ -223,8 +241,8 @@ impl Carved {
     fn shown_at(&self, x: usize, y: usize, by: DVec2) -> [f64; 2] {
         let grid = &self.reads_m[0].grid;
         let [east, south] = [0, 1].map(|k| DVec2::from(self.reads_m[k].gradient(x, y)));
-        let determinant = east.perp_dot(south);
-        let solve = |d: DVec2| DVec2::new(south.y * d.x - east.y * d.y, east.x * d.y - south.x * d.x) / determinant;
+        let per = 1.0 / east.perp_dot(south);
+        let solve = |d: DVec2| DVec2::new(south.y * d.x - east.y * d.y, east.x * d.y - south.x * d.x) * per;
         let (here, wanted) = (DVec2::from(grid.center_m(x, y)), self.reads_at(x, y) + by);
         let extent = DVec2::from(grid.extent_m());
         let mut at = here + solve(by);
@@ -239,7 +257,7 @@ impl Carved {
     /// crust, so that the two together leave the answer of isostasy, spread over the width of the lithosphere's strength.
     fn relief_kept(&self) -> Field<f32> {
         match self.worn.last() {
-            Some(wear) => blurred(wear, FLEXURE_M),
+            Some(wear) => blur(wear, FLEXURE_M / wear.grid.cell_m),
             None => Field::filled(self.surface.height.grid, 0.0),
         }
     }

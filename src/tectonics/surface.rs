@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::{
     crust,
-    grid::{Field, Grid, cubic, for_each_row, linear, nearest_feature},
+    grid::{Corners, Field, Grid, blur, cubic, for_each_row, linear, nearest_feature},
     noise::{Fbm, Gullies, Key, Octaves, Sampler, smoothstep},
     world::Layer,
 };
@@ -30,23 +30,28 @@ const STRENGTH_M: f32 = 8_000.0;
 pub struct Surface {
     /// Height without the map's own detail, m.
     pub height: Field<f32>,
-    /// Its slope towards east and south.
-    slope: [Field<f32>; 2],
     /// Height that young mountains have over the land around them, m.
     mountain: Field<f32>,
     /// Continental share.
     pub kind: Field<f32>,
     /// Age of the crust, My.
     age: Field<f32>,
+    /// Owner.
+    plate: Vec<u8>,
+    rock: Vec<Rock>,
+    borders: Vec<BorderCell>,
+    time_myr: f64,
+    corner_m: DVec2,
+}
+
+/// What the plates know besides, on the tectonic raster.
+struct Crust {
     /// Crust, km.
     thickness: Field<f32>,
     /// Uplift, mm/yr.
     uplift: Field<f32>,
-    /// Owner.
-    plate: Vec<u8>,
     /// Boundary class and distance to it, m.
     boundary: (Vec<u8>, Field<f32>),
-    corner_m: DVec2,
 }
 
 /// One cell of the map.
@@ -80,43 +85,52 @@ impl Surface {
         });
         // The plates' strength carries short loads: what the crust was at the start shows smoothed, but not below the
         // ranges raised since, whose height is their own.
-        let stiff = blurred(&base, params.belt_km * 1e3 / 4.0);
-        let shapes = blurred(&profiles(run, params, &borders, &plate, &rock), 1.5 * grid.cell_m);
-        let mountain = blurred(&mountain, 0.7 * grid.cell_m);
+        let smooth = |field: &Field<f32>, deviation_m: f64| blur(field, deviation_m / grid.cell_m);
+        let stiff = smooth(&base, params.belt_km * 1e3 / 4.0);
+        let shapes = smooth(&profiles(run, params, &borders, &plate, &rock), 1.5 * grid.cell_m);
+        let mountain = smooth(&mountain, 0.7 * grid.cell_m);
         let height = Field::from_fn(grid, |x, y| {
             let i = grid.index(x, y);
             let bent = stiff.data[i] - base.data[i];
             let free = libm::expf(-rock[i].added_m / STRENGTH_M);
             base.data[i] + bent * free + shapes.data[i] + mountain.data[i]
         });
-        let slope = [0, 1].map(|axis| Field::from_fn(grid, |x, y| height.gradient(x, y)[axis] as f32));
-        let part = |f: fn(&Rock) -> f32| Field::from_fn(grid, |x, y| f(&rock[grid.index(x, y)]));
         let time = run.time_myr as f32;
         Self {
-            slope,
             mountain,
-            kind: part(|r| r.kind),
+            kind: Field::from_fn(grid, |x, y| rock[grid.index(x, y)].kind),
             age: Field::from_fn(grid, |x, y| time - rock[grid.index(x, y)].born_myr),
-            thickness: part(|r| (r.thickness_m() * 1e-3) as f32),
-            // Thickening shows as uplift by Airy's factor; m/My are mm/yr times a thousand.
-            uplift: Field::from_fn(grid, |x, y| {
-                rock[grid.index(x, y)].rate_at(time) * ((1.0 - crust::CONTINENTAL / crust::MANTLE) * 1e-3) as f32
-            }),
-            boundary: boundary_layer(grid, &borders),
             height,
             plate,
+            rock,
+            borders,
+            time_myr: run.time_myr,
             corner_m: run.domain.corner_m,
+        }
+    }
+
+    fn crust(&self) -> Crust {
+        let grid = self.height.grid;
+        let part = |f: &(dyn Fn(&Rock) -> f32 + Sync)| Field::from_fn(grid, |x, y| f(&self.rock[grid.index(x, y)]));
+        // Thickening shows as uplift by Airy's factor; m/My are mm/yr times a thousand.
+        let airy = ((1.0 - crust::CONTINENTAL / crust::MANTLE) * 1e-3) as f32;
+        Crust {
+            thickness: part(&|rock| (rock.thickness_m() * 1e-3) as f32),
+            uplift: part(&|rock| rock.rate_at(self.time_myr as f32) * airy),
+            boundary: boundary_layer(grid, &self.borders),
         }
     }
 
     /// Reads the surface onto a map: one field a layer, heights with the detail that the map's cells resolve.
     pub fn read(&self, warp: &Warp, detail: &Detail) -> Vec<(Layer, Field<f32>)> {
-        let map = detail.plains.map;
+        let (map, grid) = (detail.plains.map, self.height.grid);
+        let slope = [0, 1].map(|axis| Field::from_fn(grid, |x, y| self.height.gradient(x, y)[axis] as f32));
+        let crust = self.crust();
         let mut readings = vec![Reading::default(); map.cells()];
         for_each_row(&mut readings, map.width, |y, row| {
             let mut ridges = detail.ridges.sampler();
             for (x, reading) in row.iter_mut().enumerate() {
-                *reading = self.read_cell(map.center_m(x, y).into(), warp, detail, &mut ridges);
+                *reading = self.read_cell(map.center_m(x, y).into(), warp, (&slope, &crust), detail, &mut ridges);
             }
         });
         type Part = fn(&Reading) -> f32;
@@ -146,52 +160,57 @@ impl Surface {
         heights.level_above(land_share)
     }
 
-    fn read_cell(&self, at_m: DVec2, warp: &Warp, detail: &Detail, ridges: &mut Sampler) -> Reading {
+    fn read_cell(
+        &self,
+        at_m: DVec2,
+        warp: &Warp,
+        (slope, crust): (&[Field<f32>; 2], &Crust),
+        detail: &Detail,
+        ridges: &mut Sampler,
+    ) -> Reading {
         let (q_m, rows) = warp.read_with_jacobian(at_m);
         let q: [f64; 2] = (q_m - self.corner_m).into();
         let base = cubic(&self.height, q);
-        let slope = DVec2::new(linear(&self.slope[0], q), linear(&self.slope[1], q));
+        let here = Corners::at(&self.height.grid, q);
+        let slope = DVec2::new(here.read(&slope[0]), here.read(&slope[1]));
         // Chain rule: the slope on the map is the transposed Jacobian times the slope in the plates.
         let slope = DVec2::new(rows[0].x * slope.x + rows[1].x * slope.y, rows[0].y * slope.x + rows[1].y * slope.y);
-        let kind = linear(&self.kind, q);
-        let mountain = linear(&self.mountain, q);
+        let kind = here.read(&self.kind);
+        let mountain = here.read(&self.mountain);
         Reading {
             height: (base + detail.height(at_m, base, slope, [kind, mountain], ridges)) as f32,
-            plate: self.plate_at(q) as f32,
+            plate: self.plate_at(&here) as f32,
             kind: kind.clamp(0.0, 1.0) as f32,
-            age: linear(&self.age, q).max(0.0) as f32,
-            thickness: linear(&self.thickness, q) as f32,
-            uplift: linear(&self.uplift, q) as f32,
-            boundary: self.boundary_at(q, detail.plains.border_m),
+            age: here.read(&self.age).max(0.0) as f32,
+            thickness: here.read(&crust.thickness) as f32,
+            uplift: here.read(&crust.uplift) as f32,
+            boundary: self.boundary_at(&here, &crust.boundary, detail.plains.border_m),
         }
     }
 
     /// Reads onto a map what the surface knows besides its height; `reads_m` are the points of the plates it reads.
     pub fn read_crust(&self, reads_m: &[Field<f32>; 2], border_m: f64) -> Vec<(Layer, Field<f32>)> {
-        let map = reads_m[0].grid;
-        let at = |x: usize, y: usize| self.at(DVec2::new(reads_m[0].at(x, y) as f64, reads_m[1].at(x, y) as f64));
-        let part =
-            |layer: Layer, f: &(dyn Fn([f64; 2]) -> f32 + Sync)| (layer, Field::from_fn(map, |x, y| f(at(x, y))));
+        let (map, crust) = (reads_m[0].grid, self.crust());
+        let part = |layer: Layer, f: &(dyn Fn(&Corners) -> f32 + Sync)| {
+            let field = Field::from_fn(map, |x, y| {
+                let at_m = DVec2::new(reads_m[0].at(x, y) as f64, reads_m[1].at(x, y) as f64);
+                f(&Corners::at(&self.height.grid, self.at(at_m)))
+            });
+            (layer, field)
+        };
         vec![
-            part(Layer::PlateId, &|q| self.plate_at(q) as f32),
-            part(Layer::CrustKind, &|q| linear(&self.kind, q).clamp(0.0, 1.0) as f32),
-            part(Layer::CrustAge, &|q| linear(&self.age, q).max(0.0) as f32),
-            part(Layer::CrustThickness, &|q| linear(&self.thickness, q) as f32),
-            part(Layer::BoundaryKind, &|q| self.boundary_at(q, border_m)),
+            part(Layer::PlateId, &|here| self.plate_at(here) as f32),
+            part(Layer::CrustKind, &|here| here.read(&self.kind).clamp(0.0, 1.0) as f32),
+            part(Layer::CrustAge, &|here| here.read(&self.age).max(0.0) as f32),
+            part(Layer::CrustThickness, &|here| here.read(&crust.thickness) as f32),
+            part(Layer::BoundaryKind, &|here| self.boundary_at(here, &crust.boundary, border_m)),
         ]
     }
 
     /// Class of the border nearest to a point, 0 where it is further than `border_m`.
-    fn boundary_at(&self, q: [f64; 2], border_m: f64) -> f32 {
-        let i = self.cell_at(q);
-        let (class, distance) = (&self.boundary.0, &self.boundary.1);
+    fn boundary_at(&self, here: &Corners, (class, distance): &(Vec<u8>, Field<f32>), border_m: f64) -> f32 {
+        let i = here.cells(&self.height.grid)[here.holder()];
         if (distance.data[i] as f64) < border_m { class[i] as f32 } else { 0.0 }
-    }
-
-    fn cell_at(&self, q: [f64; 2]) -> usize {
-        let g = &self.height.grid;
-        let clamp = |v: f64, n: usize| ((v / g.cell_m).max(0.0) as usize).min(n - 1);
-        g.index(clamp(q[0], g.width), clamp(q[1], g.height))
     }
 
     /// A point of the plates' square from its corner, m.
@@ -207,22 +226,20 @@ impl Surface {
     }
 
     /// Whether this is sea floor made in the last so many My.
-    pub fn is_newer(&self, q: [f64; 2], myr: f64) -> bool {
-        let i = self.cell_at(q);
+    #[inline]
+    pub fn is_newer(&self, here: &Corners, myr: f64) -> bool {
+        let i = here.cells(&self.height.grid)[here.holder()];
         (self.age.data[i] as f64) < myr && self.kind.data[i] < 0.5
     }
 
     /// The owner with most of the bilinear weight around a point: borders smoother than the raster's steps.
-    pub fn plate_at(&self, q: [f64; 2]) -> u8 {
-        let g = &self.height.grid;
-        let half = 0.5 * g.cell_m;
-        let corners = [[-half, -half], [half, -half], [-half, half], [half, half]]
-            .map(|d| self.plate[self.cell_at([q[0] + d[0], q[1] + d[1]])]);
+    #[inline]
+    pub fn plate_at(&self, here: &Corners) -> u8 {
+        let corners = here.cells(&self.height.grid).map(|i| self.plate[i]);
         if corners.iter().all(|&c| c == corners[0]) {
             return corners[0];
         }
-        let f = [q[0], q[1]].map(|v| (v / g.cell_m - 0.5).rem_euclid(1.0));
-        let weights = [(1.0 - f[0]) * (1.0 - f[1]), f[0] * (1.0 - f[1]), (1.0 - f[0]) * f[1], f[0] * f[1]];
+        let weights = here.weights();
         let weight = |id: u8| (0..4).filter(|&k| corners[k] == id).map(|k| weights[k]).sum::<f64>();
         corners.into_iter().max_by(|&a, &b| weight(a).total_cmp(&weight(b)).then(b.cmp(&a))).unwrap_or(corners[0])
     }
@@ -270,11 +287,15 @@ fn profiles(
         for border in borders.iter().filter(|b| b.meeting == meeting) {
             at[border.cell] = Some(*border);
         }
+        let reach_m = reach_m(meeting, belt_m);
         let near = nearest_feature(grid, |i| at[i].is_some());
         for_each_row(&mut shape.data, grid.width, |y, row| {
             for (x, value) in row.iter_mut().enumerate() {
                 let i = grid.index(x, y);
                 let d = near.distance_m.data[i] as f64;
+                if d > reach_m {
+                    continue;
+                }
                 let Some(border) = at.get(near.index.data[i] as usize).copied().flatten() else { continue };
                 // How long this border has been at work: full after 40 km.
                 let moved = border.speed_m_per_yr * run.time_myr * 1e6;
@@ -285,6 +306,16 @@ fn profiles(
         });
     }
     shape
+}
+
+/// Distance beyond which a profile is less than a millimetre, m.
+fn reach_m(meeting: Meeting, belt_m: f64) -> f64 {
+    match meeting {
+        Meeting::Subduction => 290e3,
+        Meeting::Collision => 4.5 * belt_m,
+        Meeting::Spreading => 140e3,
+        Meeting::Transform => 30e3,
+    }
 }
 
 fn profile(meeting: Meeting, d: f64, under: bool, rock: &Rock, params: &PlatesParams, belt_m: f64) -> f64 {
@@ -320,38 +351,6 @@ fn boundary_layer(grid: Grid, borders: &[BorderCell]) -> (Vec<u8>, Field<f32>) {
     let near = nearest_feature(grid, |i| class[i] != 0);
     let classes = near.index.data.iter().map(|&i| class.get(i as usize).copied().unwrap_or(0)).collect();
     (classes, near.distance_m)
-}
-
-/// Smoothed by three box passes either way, close to a Gaussian of this standard deviation.
-pub fn blurred(field: &Field<f32>, deviation_m: f64) -> Field<f32> {
-    // Three boxes of 2r + 1 cells have variance (2r + 1)² - 1, divided by 4.
-    let cells = deviation_m / field.grid.cell_m;
-    let radius = (((4.0 * cells * cells + 1.0).sqrt() - 1.0) / 2.0).round() as usize;
-    let mut out = field.clone();
-    if radius == 0 {
-        return out;
-    }
-    for _ in 0..3 {
-        out = box_rows_transposed(&box_rows_transposed(&out, radius), radius);
-    }
-    out
-}
-
-/// Box mean along rows, written transposed (the tectonic raster is square).
-fn box_rows_transposed(field: &Field<f32>, radius: usize) -> Field<f32> {
-    let n = field.grid.width;
-    let mut rows = vec![0.0f32; n * n];
-    for_each_row(&mut rows, n, |y, out| {
-        let row = field.row(y);
-        let at = |i: isize| row[i.clamp(0, n as isize - 1) as usize] as f64;
-        let r = radius as isize;
-        let mut sum: f64 = (-r..=r).map(at).sum();
-        for (x, v) in out.iter_mut().enumerate() {
-            *v = (sum / (2 * r + 1) as f64) as f32;
-            sum += at(x as isize + r + 1) - at(x as isize - r);
-        }
-    });
-    Field::from_fn(field.grid, |x, y| rows[x * n + y])
 }
 
 /// Ground finer than the tectonic cells where nothing was raised: plains, uplands and the hills of the sea floor.

@@ -15,6 +15,11 @@ const SHELF_SLOPE: f64 = 1e-3;
 const LEAST_M: f64 = 1e-3;
 /// Lengths of the eight steps, in fifths of a cell.
 const FIFTHS: [u32; 8] = [7, 5, 7, 5, 5, 7, 5, 7];
+/// One over each of them.
+const SHARES: [f64; 8] = {
+    let (d, s) = (1.0 / 7.0, 1.0 / 5.0);
+    [d, s, d, s, s, d, s, d]
+};
 
 /// The waters off a coast, with buffers kept.
 #[derive(Default)]
@@ -49,9 +54,8 @@ impl Coast {
         let fall = SHELF_SLOPE * compass.grid.cell_m / 5.0;
         let (mut left, mut at) = (0.0, 0u32);
         while self.rings.iter().any(|ring| !ring.is_empty()) {
-            let ring = self.rings.pop_front().unwrap_or_default();
-            self.rings.push_back(Vec::new());
-            for i in ring.into_iter().map(|i| i as usize) {
+            let mut ring = self.rings.pop_front().unwrap_or_default();
+            for i in ring.drain(..).map(|i| i as usize) {
                 // Listed again nearer by.
                 if self.distance[i] != at {
                     continue;
@@ -62,6 +66,7 @@ impl Coast {
                 ground_m[i] += settles;
                 left += self.hand_on(compass, i, load - settles, load_m, room_m);
             }
+            self.rings.push_back(ring);
             at += 1;
         }
         for i in self.touched.drain(..) {
@@ -76,12 +81,20 @@ impl Coast {
             return 0.0;
         }
         let at = self.distance[i];
-        let outward = |(_, j): &(u8, usize)| room_m[*j] > 0.0 && self.distance[*j] > at;
-        let further: Vec<(u8, usize)> = compass.around(i).filter(outward).collect();
-        let shares: f64 = further.iter().map(|&(way, _)| 1.0 / FIFTHS[way as usize] as f64).sum();
-        for &(way, j) in &further {
-            let step = FIFTHS[way as usize];
-            load_m[j] += load / (step as f64 * shares);
+        let (mut further, mut count, mut shares) = ([(0, 0); 8], 0, 0.0);
+        compass.each(i, |way, j| {
+            if room_m[j] > 0.0 && self.distance[j] > at {
+                further[count] = (FIFTHS[way as usize], j);
+                count += 1;
+                shares += SHARES[way as usize];
+            }
+        });
+        if count == 0 {
+            return load;
+        }
+        let per_share = load / shares;
+        for &(step, j) in &further[..count] {
+            load_m[j] += per_share / step as f64;
             if at + step < self.distance[j] {
                 if self.distance[j] == u32::MAX {
                     self.touched.push(j as u32);
@@ -90,7 +103,7 @@ impl Coast {
                 self.rings[step as usize - 1].push(j as u32);
             }
         }
-        if further.is_empty() { load } else { 0.0 }
+        0.0
     }
 }
 
