@@ -21,17 +21,6 @@ fn pick(at: i64, size: usize, edges: Edges) -> usize {
     }
 }
 
-/// The four columns (or rows) around a position in cell units, and the fraction between the middle two.
-#[inline]
-fn around(at: f64, size: usize, edges: Edges) -> ([usize; 4], f64) {
-    let (base, rest) = split(at);
-    if base >= 1 && base + 2 < size as i64 {
-        let first = base as usize - 1;
-        return ([first, first + 1, first + 2, first + 3], rest);
-    }
-    ([-1, 0, 1, 2].map(|step| pick(base + step, size, edges)), rest)
-}
-
 /// Bilinear value at a point in metres; the rim's value is continued beyond it.
 pub fn linear(field: &Field<f32>, at_m: [f64; 2]) -> f64 {
     Corners::at(&field.grid, at_m).read(field)
@@ -48,7 +37,7 @@ pub struct Corners {
 
 impl Corners {
     /// The cells around a point in metres.
-    #[inline]
+    #[inline(always)]
     pub fn at(grid: &Grid, at_m: [f64; 2]) -> Self {
         let (x, across) = split(at_m[0] / grid.cell_m);
         let (y, down) = split(at_m[1] / grid.cell_m);
@@ -78,7 +67,7 @@ impl Corners {
     }
 
     /// The value of a field there.
-    #[inline]
+    #[inline(always)]
     pub fn read(&self, field: &Field<f32>) -> f64 {
         let [west, east] = self.columns;
         let [top, bottom] = self.rows.map(|y| {
@@ -97,35 +86,58 @@ pub fn cubic(field: &Field<f32>, at_m: [f64; 2]) -> f64 {
 /// The sixteen cells around a point and their Catmull-Rom weights: reads several fields of one grid at one place.
 #[derive(Clone, Copy, Debug)]
 pub struct Stencil {
-    columns: [usize; 4],
-    rows: [usize; 4],
+    cells: Sixteen,
     across: [f64; 4],
     down: [f64; 4],
 }
 
+/// Which cells those are.
+#[derive(Clone, Copy, Debug)]
+enum Sixteen {
+    /// Away from the rim four rows of four stand side by side; the first cell, and how far it is to the next row.
+    Inside {
+        first: usize,
+        width: usize,
+    },
+    Rim {
+        columns: [usize; 4],
+        rows: [usize; 4],
+    },
+}
+
 impl Stencil {
     /// The stencil around a point in metres.
-    #[inline]
+    #[inline(always)]
     pub fn at(grid: &Grid, at_m: [f64; 2]) -> Self {
-        let (columns, fx) = around(at_m[0] / grid.cell_m, grid.width, grid.edges);
-        let (rows, fy) = around(at_m[1] / grid.cell_m, grid.height, grid.edges);
-        Self { columns, rows, across: weights(fx), down: weights(fy) }
+        let ((x, fx), (y, fy)) = (split(at_m[0] / grid.cell_m), split(at_m[1] / grid.cell_m));
+        let inside = x >= 1 && y >= 1 && x + 2 < grid.width as i64 && y + 2 < grid.height as i64;
+        let cells = if inside {
+            Sixteen::Inside { first: (y as usize - 1) * grid.width + x as usize - 1, width: grid.width }
+        } else {
+            let around = |at: i64, size: usize| [-1, 0, 1, 2].map(|step| pick(at + step, size, grid.edges));
+            Sixteen::Rim { columns: around(x, grid.width), rows: around(y, grid.height) }
+        };
+        Self { cells, across: weights(fx), down: weights(fy) }
     }
 
     /// The value of a field there.
-    #[inline]
+    #[inline(always)]
     pub fn read(&self, field: &Field<f32>) -> f64 {
-        let [first, .., last] = self.columns;
+        match &self.cells {
+            Sixteen::Inside { first, width } => {
+                let data = &field.data[*first..][..3 * width + 4];
+                self.weigh(|k| [0, 1, 2, 3].map(|j| data[k * width + j]))
+            }
+            Sixteen::Rim { columns, rows } => self.weigh(|k| columns.map(|x| field.at(x, rows[k]))),
+        }
+    }
+
+    #[inline(always)]
+    fn weigh(&self, row: impl Fn(usize) -> [f32; 4]) -> f64 {
         // Down first: four sums side by side.
         let mut sums = [0.0; 4];
-        for (&y, down) in self.rows.iter().zip(self.down) {
-            let row = field.row(y);
-            let four = match row.get(first..first + 4) {
-                // Away from the rim the four stand side by side.
-                Some(&[a, b, c, d]) if first + 3 == last => [a, b, c, d],
-                _ => self.columns.map(|x| row[x]),
-            };
-            for (sum, value) in sums.iter_mut().zip(four) {
+        for (k, down) in self.down.into_iter().enumerate() {
+            for (sum, value) in sums.iter_mut().zip(row(k)) {
                 *sum += down * f64::from(value);
             }
         }

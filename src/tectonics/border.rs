@@ -1,6 +1,7 @@
 //! Borders as the tectonic raster shows them: which cells lie on one, what the plates do there, how far it is to each kind.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::{
     contact::{Motion, classify},
@@ -29,19 +30,14 @@ pub struct BorderCell {
 /// `owner` has a plate everywhere: along a spreading border the plates themselves are a crack apart.
 pub fn border_cells(run: &Simulation, owner: &[u8]) -> Vec<BorderCell> {
     let n = run.domain.cells;
-    let mut cells = Vec::new();
-    for y in 0..n - 1 {
-        for x in 0..n - 1 {
+    let row = |y: usize| {
+        (0..n - 1).filter_map(move |x| {
             let a = owner[y * n + x];
-            let b = [owner[y * n + x + 1], owner[(y + 1) * n + x]].into_iter().find(|&b| b != a);
-            if let Some(b) = b
-                && let Some(cell) = border_cell(run, owner, [x, y], [a as usize, b as usize])
-            {
-                cells.push(cell);
-            }
-        }
-    }
-    cells
+            let b = [owner[y * n + x + 1], owner[(y + 1) * n + x]].into_iter().find(|&b| b != a)?;
+            border_cell(run, owner, [x, y], [a as usize, b as usize])
+        })
+    };
+    (0..n - 1).into_par_iter().flat_map_iter(row).collect()
 }
 
 fn border_cell(run: &Simulation, owner: &[u8], [x, y]: [usize; 2], [a, b]: [usize; 2]) -> Option<BorderCell> {
