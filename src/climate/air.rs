@@ -336,24 +336,25 @@ impl<'a> Air<'a> {
         let all = |water: Water| water.vapour + water.cloud;
         let mut budget = Budget::default();
         for y in 0..grid.height {
-            let (supply, flow) = (saturation_mm(self.below.zones[y].sea_degc), self.inflow(y));
-            for x in 0..grid.width {
-                let cell = &self.cells[grid.index(x, y)];
+            let (supply, row) = (saturation_mm(self.below.zones[y].sea_degc), y * grid.width);
+            for cell in &self.cells[row..row + grid.width] {
                 budget.from_sea += cell.exchange * (supply - cell.water.vapour) * area_m2;
                 budget.to_ground += (1.0 - cell.recycled) * cell.water.cloud / self.habits.delay_s * area_m2;
-                if grid.edges == Edges::Wrap {
-                    continue;
-                }
-                let first = if self.east[y] < 0.0 { grid.width - 1 } else { 0 };
-                let mut open = if x == first { flow.along } else { 0.0 };
-                open += flow.beside.iter().filter(|(_, row)| row.is_none()).map(|(rate, _)| rate).sum::<f64>();
-                budget.from_rim += open * all(self.beyond(y)) * area_m2;
-                let mut out = 0.0;
-                out += if x == 0 { (-self.east[y]).max(0.0) } else { 0.0 };
-                out += if x + 1 == grid.width { self.east[y].max(0.0) } else { 0.0 };
-                out += if y == 0 { (-self.south[y]).max(0.0) } else { 0.0 };
-                out += if y + 1 == grid.height { self.south[y + 1].max(0.0) } else { 0.0 };
-                budget.to_rim += out / grid.cell_m * all(cell.water) * area_m2;
+            }
+            if grid.edges == Edges::Wrap {
+                continue;
+            }
+            let (flow, brings) = (self.inflow(y), all(self.beyond(y)) * area_m2);
+            let beside: f64 = flow.beside.iter().filter(|(_, row)| row.is_none()).map(|(rate, _)| rate).sum();
+            budget.from_rim += (flow.along + beside * grid.width as f64) * brings;
+            let takes = |x: usize| all(self.cells[row + x].water) * area_m2;
+            let last = if self.east[y] < 0.0 { 0 } else { grid.width - 1 };
+            budget.to_rim += flow.along * takes(last);
+            let mut out = 0.0;
+            out += if y == 0 { (-self.south[y]).max(0.0) } else { 0.0 };
+            out += if y + 1 == grid.height { self.south[y + 1].max(0.0) } else { 0.0 };
+            if out > 0.0 {
+                budget.to_rim += out / grid.cell_m * (0..grid.width).map(takes).sum::<f64>();
             }
         }
         budget

@@ -61,7 +61,8 @@ pub fn thermal_height_m(age_myr: f64) -> f64 {
 
 /// Height of crust `thickness_m` thick, continental to the share `kind`, `age_myr` old; m above the sea.
 pub fn height_m(thickness_m: f64, kind: f64, age_myr: f64) -> f64 {
-    airy_height_m(thickness_m, density(kind)) + (1.0 - kind) * thermal_height_m(age_myr)
+    let cold_m = airy_height_m(thickness_m, density(kind));
+    if kind < 1.0 { cold_m + (1.0 - kind) * thermal_height_m(age_myr) } else { cold_m }
 }
 
 #[cfg(test)]

@@ -32,6 +32,8 @@ const FLEXURE_M: f64 = 20e3;
 /// bring the one towards the other; what would end further out was carved or filled where another border was, such as
 /// the fill of a trench that a collision has closed, and has gone down or slid off with it.
 const BEYOND_M: f64 = 1_500.0;
+/// Less than this, m, is nothing: none of what is carried can be less, and numbers that fade out are slow to count with.
+const LEAST_M: f32 = 1e-6;
 /// No tectonic cell.
 const OUTSIDE: u32 = u32::MAX;
 /// What lies on the bedrock and what is told of the ground: both drift with it.
@@ -181,8 +183,8 @@ impl Carved {
                 let (height_m, own_m) = (from.read(&height), f64::from(shown_m.at(x, y)));
                 let raised_m = height_m + own_m - from.read(&self.shown_m) + kept_m;
                 let held_m = raised_m.clamp(own_m.min(sea_m) - BEYOND_M, own_m.max(sea_m) + BEYOND_M);
-                // Cubic reading overshoots by a little; none of these can be less than nothing.
-                let part = |field: &Field<f32>| (from.read(field) as f32).max(0.0);
+                // Cubic reading overshoots by a little, and spreads what is next to nothing.
+                let part = |field: &Field<f32>| Some(from.read(field) as f32).filter(|&v| v > LEAST_M).unwrap_or(0.0);
                 let carried = carried.map(|field| field.map_or(0.0, part));
                 Ground { height_m: height_m as f32, lift_m: (held_m - height_m) as f32, carried }
             }

@@ -26,6 +26,9 @@ const WIDEST_VALLEY_M: f64 = 30e3;
 /// Thickening that leaves a third of the smoothing of what lay there before, m.
 const STRENGTH_M: f32 = 8_000.0;
 
+/// No border.
+const NOWHERE: u32 = u32::MAX;
+
 /// What the map reads, on the tectonic raster.
 pub struct Surface {
     /// Height without the map's own detail, m.
@@ -77,11 +80,10 @@ impl Surface {
             crust::height_m(r.crust_m as f64, r.kind as f64, run.time_myr - r.born_myr as f64) as f32
         });
         let mountain = Field::from_fn(grid, |x, y| {
-            let i = grid.index(x, y);
-            let r = &rock[i];
-            let thickness_m = f64::from(r.crust_m + r.added_m - r.worn_m);
-            let whole = crust::height_m(thickness_m, r.kind as f64, run.time_myr - r.born_myr as f64);
-            whole as f32 - base.data[i] + r.edifice_m
+            let r = &rock[grid.index(x, y)];
+            // What heat lifts is in the base already.
+            let cold_m = |thickness_m: f32| crust::airy_height_m(thickness_m as f64, crust::density(r.kind as f64));
+            (cold_m(r.crust_m + r.added_m - r.worn_m) - cold_m(r.crust_m)) as f32 + r.edifice_m
         });
         // The plates' strength carries short loads: what the crust was at the start shows smoothed, but not below the
         // ranges raised since, whose height is their own.
@@ -283,12 +285,16 @@ fn profiles(
     let mut shape = Field::filled(grid, 0.0f32);
     let belt_m = params.belt_km * 1e3;
     for meeting in [Meeting::Subduction, Meeting::Collision, Meeting::Spreading, Meeting::Transform] {
-        let mut at = vec![None; grid.cells()];
-        for border in borders.iter().filter(|b| b.meeting == meeting) {
-            at[border.cell] = Some(*border);
+        // The border at each cell, as its place in the list.
+        let mut at = vec![NOWHERE; grid.cells()];
+        for (place, border) in borders.iter().enumerate().filter(|(_, border)| border.meeting == meeting) {
+            at[border.cell] = place as u32;
+        }
+        if at.iter().all(|&place| place == NOWHERE) {
+            continue;
         }
         let reach_m = reach_m(meeting, belt_m);
-        let near = nearest_feature(grid, |i| at[i].is_some());
+        let near = nearest_feature(grid, |i| at[i] != NOWHERE);
         for_each_row(&mut shape.data, grid.width, |y, row| {
             for (x, value) in row.iter_mut().enumerate() {
                 let i = grid.index(x, y);
@@ -296,7 +302,7 @@ fn profiles(
                 if d > reach_m {
                     continue;
                 }
-                let Some(border) = at.get(near.index.data[i] as usize).copied().flatten() else { continue };
+                let border = &borders[at[near.index.data[i] as usize] as usize];
                 // How long this border has been at work: full after 40 km.
                 let moved = border.speed_m_per_yr * run.time_myr * 1e6;
                 let strength = (moved / 40e3).min(1.0);
@@ -319,7 +325,8 @@ fn reach_m(meeting: Meeting, belt_m: f64) -> f64 {
 }
 
 fn profile(meeting: Meeting, d: f64, under: bool, rock: &Rock, params: &PlatesParams, belt_m: f64) -> f64 {
-    let bell = |x: f64, width: f64| libm::exp(-(x / width) * (x / width));
+    // Less than a part in a thousand million is not worth an exponential.
+    let bell = |x: f64, width: f64| if x.abs() > 4.6 * width { 0.0 } else { libm::exp(-(x / width) * (x / width)) };
     let land = rock.kind as f64;
     match meeting {
         // Trench with a steep inner and a gentle outer wall, then the outer rise.
