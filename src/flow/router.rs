@@ -21,7 +21,7 @@ pub(super) const PIT: u8 = 9;
 /// Marks a cell that has been put in order.
 const PLACED: u8 = u8::MAX;
 /// Rows of a strip. Wider strips leave fewer trunks, more of them use more cores.
-const STRIP_ROWS: usize = 128;
+const STRIP_ROWS: usize = 64;
 
 /// One strip's part of the order.
 #[derive(Default)]

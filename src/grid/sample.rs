@@ -123,28 +123,46 @@ impl Stencil {
     /// The value of a field there.
     #[inline(always)]
     pub fn read(&self, field: &Field<f32>) -> f64 {
-        match &self.cells {
-            Sixteen::Inside { first, width } => {
-                let data = &field.data[*first..][..3 * width + 4];
-                self.weigh(|k| [0, 1, 2, 3].map(|j| data[k * width + j]))
-            }
-            Sixteen::Rim { columns, rows } => self.weigh(|k| columns.map(|x| field.at(x, rows[k]))),
-        }
+        self.weigh(field, self.across, self.down)
+    }
+
+    /// The same in single precision, at half the work.
+    #[inline(always)]
+    pub fn read_f32(&self, field: &Field<f32>) -> f32 {
+        self.weigh(field, self.across.map(|w| w as f32), self.down.map(|w| w as f32))
     }
 
     #[inline(always)]
-    fn weigh(&self, row: impl Fn(usize) -> [f32; 4]) -> f64 {
-        // Down first: four sums side by side.
-        let mut sums = [0.0; 4];
-        for (k, down) in self.down.into_iter().enumerate() {
-            for (sum, value) in sums.iter_mut().zip(row(k)) {
-                *sum += down * f64::from(value);
+    fn weigh<T: Number>(&self, field: &Field<f32>, across: [T; 4], down: [T; 4]) -> T {
+        match &self.cells {
+            Sixteen::Inside { first, width } => {
+                let data = &field.data[*first..][..3 * width + 4];
+                weighted(across, down, |k| [0, 1, 2, 3].map(|j| data[k * width + j]))
             }
+            Sixteen::Rim { columns, rows } => weighted(across, down, |k| columns.map(|x| field.at(x, rows[k]))),
         }
-        let [a, b, c, d] = [0, 1, 2, 3].map(|k| sums[k] * self.across[k]);
-        (a + b) + (c + d)
     }
 }
+
+/// The sum over four rows of four.
+#[inline(always)]
+fn weighted<T: Number>(across: [T; 4], down: [T; 4], row: impl Fn(usize) -> [f32; 4]) -> T {
+    // Down first: four sums side by side.
+    let mut sums = [T::from(0.0); 4];
+    for (k, down) in down.into_iter().enumerate() {
+        for (sum, value) in sums.iter_mut().zip(row(k)) {
+            *sum += down * T::from(value);
+        }
+    }
+    let [a, b, c, d] = [0, 1, 2, 3].map(|k| sums[k] * across[k]);
+    (a + b) + (c + d)
+}
+
+/// What weights and sums are made of.
+trait Number: Copy + From<f32> + std::ops::Add<Output = Self> + std::ops::Mul<Output = Self> + std::ops::AddAssign {}
+
+impl Number for f32 {}
+impl Number for f64 {}
 
 #[inline]
 fn weights(t: f64) -> [f64; 4] {

@@ -184,7 +184,7 @@ impl Carved {
                 let raised_m = height_m + own_m - from.read(&self.shown_m) + kept_m;
                 let held_m = raised_m.clamp(own_m.min(sea_m) - BEYOND_M, own_m.max(sea_m) + BEYOND_M);
                 // Cubic reading overshoots by a little, and spreads what is next to nothing.
-                let part = |field: &Field<f32>| Some(from.read(field) as f32).filter(|&v| v > LEAST_M).unwrap_or(0.0);
+                let part = |field: &Field<f32>| Some(from.read_f32(field)).filter(|&v| v > LEAST_M).unwrap_or(0.0);
                 let carried = carried.map(|field| field.map_or(0.0, part));
                 Ground { height_m: height_m as f32, lift_m: (held_m - height_m) as f32, carried }
             }

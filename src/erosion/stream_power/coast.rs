@@ -11,8 +11,8 @@ use crate::flow::Compass;
 
 /// Fall of a full shelf away from the mouth, rise over run; continental shelves have 1 to 2 m a km.
 const SHELF_SLOPE: f64 = 1e-3;
-/// Load that is not worth dividing, m.
-const LEAST_M: f64 = 1e-3;
+/// Load that is not worth dividing, as a share of the largest: what is left of it nine reaches from its mouth.
+const LEAST_SHARE: f64 = 1e-4;
 /// Lengths of the eight steps, in fifths of a cell.
 const FIFTHS: [u32; 8] = [7, 5, 7, 5, 5, 7, 5, 7];
 /// One over each of them.
@@ -45,7 +45,9 @@ impl Coast {
         self.distance.resize(load_m.len(), u32::MAX);
         self.rings.clear();
         self.rings.resize_with(8, Vec::new);
+        let mut least_m = 0.0f64;
         for i in (0..load_m.len()).filter(|&i| load_m[i] > 0.0) {
+            least_m = least_m.max(LEAST_SHARE * load_m[i]);
             self.distance[i] = 0;
             self.touched.push(i as u32);
             self.rings[0].push(i as u32);
@@ -61,7 +63,7 @@ impl Coast {
                     continue;
                 }
                 let load = std::mem::take(&mut load_m[i]);
-                let wants = if load < LEAST_M { load } else { keeps * load };
+                let wants = if load < least_m { load } else { keeps * load };
                 let settles = wants.min(room_m[i] - fall * at as f64).max(0.0);
                 ground_m[i] += settles;
                 left += self.hand_on(compass, i, load - settles, load_m, room_m);

@@ -51,7 +51,7 @@ pub(super) struct Deposition {
 }
 
 impl Deposition {
-    /// Solves a step. `surface` begins as the level of every outlet, and ends as ground with the water on it; `height`
+    /// Solves a step. `surface` begins as what was raised, with the level of every outlet, and ends as ground with the water on it; `height`
     /// ends as the ground, of which nothing in a lake has risen yet.
     pub(super) fn settle(
         &mut self,
@@ -69,10 +69,8 @@ impl Deposition {
         self.load.clear();
         self.load.resize(raised.len(), Load::default());
         height.copy_from_slice(raised);
-        for round in 0..MOST_ROUNDS {
-            if round > 0 {
-                self.gather(router, slopes, raised, surface);
-            }
+        for _ in 0..MOST_ROUNDS {
+            self.gather(router, slopes, raised, surface);
             self.climb(router, slopes, raised, surface);
             if self.ground(router, raised, surface, height) < SETTLED_M {
                 break;
