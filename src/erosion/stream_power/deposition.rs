@@ -7,15 +7,17 @@
 //! and no cell changes its kind. What bends the law (an exponent other than 1, a slope that slides, a lake that drowns
 //! a cell or is full) is made linear about the last round: Newton's method over the whole network.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use rayon::prelude::*;
 
 use crate::flow::{ROOT, Router};
 
 use super::law::settle;
 
-/// Rounds after which heights have to have settled; most steps take four.
+/// Rounds after which heights have to have settled; most steps take three.
 const MOST_ROUNDS: usize = 30;
-/// Change of height in a round below which they have, m: what is left to change falls with its square.
+/// Change of level in a round below which they have, m: what is left to change falls with its square.
 const SETTLED_M: f64 = 0.05;
 
 /// The law along the network.
@@ -68,20 +70,21 @@ impl Deposition {
         self.share.par_iter_mut().for_each(|cells| *cells = (deposition / *cells).min(1.0));
         self.load.clear();
         self.load.resize(raised.len(), Load::default());
-        height.copy_from_slice(raised);
+        // Without any load first: that tells where rivers run, what slides and what drowns.
+        self.climb(router, slopes, raised, surface);
         for _ in 0..MOST_ROUNDS {
             self.gather(router, slopes, raised, surface);
-            self.climb(router, slopes, raised, surface);
-            if self.ground(router, raised, surface, height) < SETTLED_M {
+            if !self.climb(router, slopes, raised, surface) {
                 break;
             }
         }
+        ground(router, raised, surface, height);
     }
 
-    /// One pass up: every cell above its receiver, with the load that it will have.
-    fn climb(&self, router: &Router, slopes: &Slopes, raised: &[f64], surface: &mut [f64]) {
+    /// One pass up: every cell above its receiver, with the load that it will have; tells whether any has yet to settle.
+    fn climb(&self, router: &Router, slopes: &Slopes, raised: &[f64], surface: &mut [f64]) -> bool {
         let (way, n) = (router.ways(), slopes.exponent);
-        router.climb(surface, |i, _, below| {
+        let level = |i: usize, below: f64| {
             let (g, load) = (self.share[i], self.load[i]);
             let stiff = 1.0 - g * load.per_m;
             let filled = (raised[i] + g * load.at_zero) / stiff;
@@ -90,7 +93,16 @@ impl Deposition {
             }
             let settled = settle(filled, below, slopes.ratio[i] / stiff, n);
             below + (settled - below).clamp(0.0, slopes.steepest_m[way[i] as usize & 7])
+        };
+        let moves = AtomicBool::new(false);
+        router.climb(surface, |i, before, below| {
+            let level = level(i, below);
+            if (level - before).abs() > SETTLED_M && !moves.load(Ordering::Relaxed) {
+                moves.store(true, Ordering::Relaxed);
+            }
+            level
         });
+        moves.into_inner()
     }
 
     /// One pass down: what leaves each cell, about the levels of the last round.
@@ -120,18 +132,16 @@ impl Deposition {
             came.leaving(raised[i], (raised[i] + bend + g * came.at_zero) / stiff, pull / stiff)
         });
     }
+}
 
-    /// The ground below the surface; gives the greatest change.
-    fn ground(&self, router: &Router, raised: &[f64], surface: &[f64], height: &mut [f64]) -> f64 {
-        let way = router.ways();
-        let cells = height.par_iter_mut().zip(surface).zip(raised).enumerate();
-        let changes = cells.map(|(i, ((z, &level), &raised))| {
-            let drowned = way[i] == ROOT || level <= surface[router.receiver(i)];
-            let ground = if drowned { raised.min(level) } else { level };
-            (ground - std::mem::replace(z, ground)).abs()
-        });
-        changes.reduce(|| 0.0, f64::max)
-    }
+/// The ground below the surface: what is drowned, or level with the water below it, keeps its height.
+fn ground(router: &Router, raised: &[f64], surface: &[f64], height: &mut [f64]) {
+    let way = router.ways();
+    let cells = height.par_iter_mut().zip(surface).zip(raised).enumerate();
+    cells.for_each(|(i, ((z, &level), &raised))| {
+        let drowned = way[i] == ROOT || level <= surface[router.receiver(i)];
+        *z = if drowned { raised.min(level) } else { level };
+    });
 }
 
 impl Load {
