@@ -12,7 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    grid::{Field, Grid, for_each_row},
+    grid::{Field, Grid, for_each_row, max_rows},
     process::{Context, Placement, Process, ProcessError, State, Step},
     world::{Layer, World},
 };
@@ -176,18 +176,11 @@ impl Creep<'_> {
     /// The greatest speed-up of any face, with what it adds when slopes change: `(1 + s²) / (1 − s²)²`, up to the cap.
     fn fastest(&self, value: &[f64]) -> f64 {
         let (grid, width) = (self.grid, self.grid.width);
-        let steepest = (0..grid.height)
-            .into_par_iter()
-            .map(|y| {
-                let (row, south) = (&value[y * width..][..width], &value[grid.row(y, 1) * width..][..width]);
-                let mut steepest = 0.0f64;
-                for x in 0..width {
-                    let east = row[grid.column(x, 1)];
-                    steepest = steepest.max((row[x] - east).abs()).max((row[x] - south[x]).abs());
-                }
-                steepest
-            })
-            .reduce(|| 0.0, f64::max);
+        let steepest = max_rows(&grid, |y| {
+            let (row, south) = (&value[y * width..][..width], &value[grid.row(y, 1) * width..][..width]);
+            let fall = |x: usize| (row[x] - row[grid.column(x, 1)]).abs().max((row[x] - south[x]).abs());
+            (0..width).map(fall).fold(0.0, f64::max)
+        });
         let speed = self.speed_up(steepest / grid.cell_m);
         if self.critical.is_finite() { (2.0 * speed * speed).min(FASTEST) } else { 1.0 }
     }

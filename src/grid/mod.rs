@@ -18,7 +18,7 @@ pub use blur::{blur, transposed};
 pub use contour::{Contour, contour_lines, contour_rings};
 pub use distance::{Nearest, nearest_feature};
 pub use field::Field;
-pub use parallel::{for_each_row, map_cells, sum_f64, sum_rows};
+pub use parallel::{for_each_row, map_cells, max_rows, sum_f64, sum_rows};
 pub(crate) use resample::keys;
 pub use resample::{Places, Points, resample, resample_at};
 pub use sample::{Corners, Stencil, cubic, linear};

@@ -3,10 +3,29 @@
 
 use rayon::prelude::*;
 
+use super::Grid;
+
+/// Cells below which waking another thread takes longer than the loop.
+const FEW: usize = 2048;
+
 /// Runs `f(y, row)` over the rows of a row-major buffer, in parallel.
 pub fn for_each_row<T: Send>(data: &mut [T], width: usize, f: impl Fn(usize, &mut [T]) + Sync + Send) {
-    if width > 0 {
+    if width == 0 {
+        return;
+    }
+    if data.len() <= FEW {
+        data.chunks_exact_mut(width).enumerate().for_each(|(y, row)| f(y, row));
+    } else {
         data.par_chunks_exact_mut(width).enumerate().for_each(|(y, row)| f(y, row));
+    }
+}
+
+/// The greatest `f(y)` over a raster's rows, and 0.
+pub fn max_rows(grid: &Grid, f: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
+    if grid.cells() <= FEW {
+        (0..grid.height).map(f).fold(0.0, f64::max)
+    } else {
+        (0..grid.height).into_par_iter().map(f).reduce(|| 0.0, f64::max)
     }
 }
 

@@ -455,20 +455,21 @@ mod tests {
     }
 
     /// Runs one stage on ground with one parameter set; a refusal in words is fine, a panic or a bad value is not.
-    fn survives(kind: &str, set: String, world: &str) {
+    fn survives(kind: &str, set: &[String], world: &str) {
+        let set = set.to_vec();
         let base = "[[stage]]\nkind = \"fbm\"\nid = \"base\"\n";
         let text = format!("[world]\nsize = 16\n{world}\n{base}[[stage]]\nid = \"own\"\nkind = \"{kind}\"\n");
         let source = Source { name: "t".into(), file: "t.toml".into(), folder: PathBuf::new(), text };
-        let plan = Plan::new(&source, &Overrides { set: vec![set.clone()], ..Overrides::default() });
+        let plan = Plan::new(&source, &Overrides { set: set.clone(), ..Overrides::default() });
         // What is in range may still not go together: said in a line, with its place.
         let plan = match plan {
             Ok(plan) => plan,
-            Err(error) => return assert!(error.to_string().starts_with("t.toml:"), "{kind} with {set}: {error}"),
+            Err(error) => return assert!(error.to_string().starts_with("t.toml:"), "{kind} with {set:?}: {error}"),
         };
         let stay = AtomicBool::new(false);
         match Timeline::new(&plan, &stay).run(&mut [], &mut |_| ()) {
             Ok(_) | Err(TimelineError::Process { .. }) => {}
-            Err(error) => panic!("{kind} with {set} and {world}: {error}"),
+            Err(error) => panic!("{kind} with {set:?} and {world}: {error}"),
         }
     }
 
@@ -477,22 +478,26 @@ mod tests {
         for kind in crate::recipe::stage_kinds().iter().filter(|kind| kind.kind != "drip") {
             for (key, property) in kind.schema["properties"].as_object().unwrap() {
                 for bound in ["minimum", "maximum"] {
+                    let cells = property["x-unit"] == "cells" && bound == "maximum";
                     // The most cells a map may have are a matter of patience and memory, not of parameters.
-                    let cells = property["x-unit"] == "cells" && bound == "maximum" && kind.kind == "zoom";
-                    if property[bound].is_number() && !cells {
-                        // Schemas state the ranges of counts as fractions too.
-                        let whole = property["type"].to_string().contains("integer");
-                        let value = property[bound].as_f64().unwrap();
-                        let value = if whole { format!("{value:.0}") } else { format!("{value:?}") };
-                        survives(kind.kind, format!("own.{key}={value}"), "");
+                    if !property[bound].is_number() || (cells && kind.kind == "zoom") {
+                        continue;
                     }
+                    // Schemas state the ranges of counts as fractions too.
+                    let whole = property["type"].to_string().contains("integer");
+                    let value = property[bound].as_f64().unwrap();
+                    let value = if whole { format!("{value:.0}") } else { format!("{value:?}") };
+                    let mut set = vec![format!("own.{key}={value}")];
+                    // So are the steps of the most cells that plates may have.
+                    set.extend(cells.then(|| "own.steps=2".to_owned()));
+                    survives(kind.kind, &set, "");
                 }
             }
             for world in ["extent_km = 0.01", "extent_km = 40075", "edges = \"wrap\"", "sea_level_m = 12000"] {
-                survives(kind.kind, "own.enabled=true".into(), world);
+                survives(kind.kind, &["own.enabled=true".into()], world);
             }
-            survives(kind.kind, "world.size=[16, 1024]".into(), "");
-            survives(kind.kind, "world.size=[1024, 16]".into(), "");
+            survives(kind.kind, &["world.size=[16, 1024]".into()], "");
+            survives(kind.kind, &["world.size=[1024, 16]".into()], "");
         }
     }
 }
