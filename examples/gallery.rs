@@ -1,4 +1,5 @@
-//! Draws `docs/gallery/`: every preset, the plates of `collision` in motion, and what else its world knows.
+//! Draws `docs/gallery/`: every preset, the plates of `collision` in motion, what else its world knows, its waters, a
+//! continent and a valley in it, and the report that sets the default world beside Earth.
 //!
 //! `cargo run --release --example gallery` draws it all; names of pictures after `--` draw only those.
 
@@ -11,6 +12,10 @@ use std::{
 
 use image::{RgbImage, codecs::jpeg::JpegEncoder};
 use upthrust::{
+    measure::{
+        self,
+        report::{self, Subject},
+    },
     recipe::{self, Overrides, Plan, Preset},
     relief::{self, Options, View},
     timeline::{Moment, Sink, Timeline},
@@ -46,6 +51,15 @@ fn main() -> Outcome<()> {
     if wants("layers") {
         page.draw("layers", &layers()?)?;
     }
+    if wants("waters") {
+        page.draw("waters", &waters()?)?;
+    }
+    if wants("three-scales") {
+        page.draw("three-scales", &three_scales()?)?;
+    }
+    if wants("report") {
+        page.report()?;
+    }
     page.write_captions()
 }
 
@@ -71,6 +85,19 @@ impl Page {
         Ok(std::fs::write(self.folder.join(name).with_extension("jpg"), bytes)?)
     }
 
+    /// The default world beside Earth, with the plots in a folder of their own.
+    fn report(&self) -> Outcome<()> {
+        let plan = plan(recipe::find_preset("collision").ok_or("there is no preset 'collision'")?, SIDE)?;
+        let survey = measure::survey(&grow(&plan, &mut [])?);
+        let (text, plots) = report::markdown(&[Subject { name: "collision".to_owned(), survey }], "report_plots");
+        let folder = self.folder.join("report_plots");
+        std::fs::create_dir_all(&folder)?;
+        for (name, svg) in plots {
+            std::fs::write(folder.join(name), svg)?;
+        }
+        Ok(std::fs::write(self.folder.join("report.md"), text)?)
+    }
+
     fn write_captions(&self) -> Outcome<()> {
         let mut text = String::from(
             "# Gallery\n\nEvery picture here is drawn by `cargo run --release --example gallery`; nothing is retouched.\n\n",
@@ -89,10 +116,22 @@ impl Page {
                 "The same world at its end, layer by layer. Each is in `world.zarr`, and `upthrust render WORLD FILE \
                  --view LAYER` draws it.",
             ),
+            (
+                "waters",
+                "Rain, rivers, lakes and what grows",
+                "The same continent and its weather. Westerly wind brings the rain; behind the ranges it is dry. Runoff                  feeds the rivers, drawn as wide as their discharge; lakes lie where the plates closed a basin.",
+            ),
+            (
+                "three-scales",
+                "From continent to valley",
+                "Preset `continent-to-valley`: 1,000 km, then 64 km of it, then 5 km, each carved anew by the rivers that                  come in over its rim.",
+            ),
         ];
         for (name, title, caption) in sheets {
             writeln!(text, "## {title}\n\n![{title}]({name}.jpg)\n\n{caption}\n")?;
         }
+        text += "## Beside Earth\n\nThe default world's landscape, measured: [report](report.md), as `upthrust inspect WORLD \
+                 --report FILE.md` writes it.\n\n";
         text += "## Presets\n\n";
         for preset in recipe::presets() {
             let (title, description) = preset.summary();
@@ -154,6 +193,50 @@ fn plates_in_motion() -> Outcome<RgbImage> {
         Ok((label, relief::map(world, &View::Relief, &options)?))
     });
     Ok(relief::contact_sheet(&panels.collect::<Outcome<Vec<_>>>()?, PANELS / 2))
+}
+
+fn waters() -> Outcome<RgbImage> {
+    let side = PANEL + PANEL / 2;
+    let plan = plan(recipe::find_preset("collision").ok_or("there is no preset 'collision'")?, side)?;
+    let world = grow(&plan, &mut [])?;
+    let options = Options { furniture: true, ..Options::bare(side) };
+    let layers = [Layer::Rain, Layer::Discharge, Layer::Biome].map(|layer| (layer.name(), View::Layer(layer)));
+    let panels = std::iter::once(("rivers and lakes", View::Relief)).chain(layers);
+    let panels = panels.map(|(label, view)| Ok((label.to_owned(), relief::map(&world, &view, &options)?)));
+    Ok(relief::contact_sheet(&panels.collect::<Outcome<Vec<_>>>()?, 2))
+}
+
+/// Keeps the last world of every raster that a run goes through.
+#[derive(Default)]
+struct Scales {
+    worlds: Vec<World>,
+}
+
+impl Sink for Scales {
+    fn wants(&mut self, moment: &Moment) -> bool {
+        moment.stage_over()
+    }
+
+    fn take(&mut self, world: &World, _: &Moment) -> Result<(), String> {
+        if self.worlds.last().is_some_and(|last| last.grid == world.grid) {
+            self.worlds.pop();
+        }
+        self.worlds.push(world.clone());
+        Ok(())
+    }
+}
+
+fn three_scales() -> Outcome<RgbImage> {
+    let mut scales = Scales::default();
+    let preset = recipe::find_preset("continent-to-valley").ok_or("there is no preset 'continent-to-valley'")?;
+    grow(&plan(preset, SIDE)?, &mut [&mut scales])?;
+    let options = Options { furniture: true, ..Options::bare(SIDE) };
+    let panels = scales.worlds.iter().map(|world| {
+        let label = format!("{:.0} km", world.grid.extent_m()[0] / 1e3);
+        Ok((label, relief::map(world, &View::Relief, &options)?))
+    });
+    let panels = panels.collect::<Outcome<Vec<_>>>()?;
+    Ok(relief::contact_sheet(&panels, panels.len()))
 }
 
 fn layers() -> Outcome<RgbImage> {
