@@ -20,6 +20,7 @@ use super::{
     coast::{self, Coast},
     deposition::{Deposition, Slopes},
     law::settle,
+    slide::Slide,
 };
 use crate::erosion::diffusion::diffuse;
 
@@ -37,8 +38,12 @@ pub struct Law {
     pub slope_exponent: f64,
     /// `G`: share of the load that is laid down again, over catchment area.
     pub deposition: f64,
+    /// Catchment under a metre of rain a year at which channels begin, m²; 0 where all water cuts.
+    pub channel_area_m2: f64,
     /// Steepest slope to a receiver, rise over run.
     pub steepest: f64,
+    /// Whether that slope is the steepest in any other direction as well.
+    pub slides_all_round: bool,
     /// `D` on land, m²/yr.
     pub diffusivity_m2_per_yr: f64,
     /// Distance from the mouth over which a river's load falls to 1/e in the sea, m.
@@ -47,6 +52,19 @@ pub struct Law {
     pub rim: Rim,
     /// Whether uplift moves base levels too.
     pub lifts_base: bool,
+}
+
+impl Law {
+    /// How strongly water cuts, `Q^m`, on slopes by the share of it that runs in channels: `1 - exp(-Q/Q_c)`.
+    fn pull(&self, water_m2: f64) -> f64 {
+        let whole = power(water_m2, self.area_exponent);
+        // Beyond 40 the share is 1 to the last bit.
+        if water_m2 >= 40.0 * self.channel_area_m2 {
+            whole
+        } else {
+            -libm::expm1(-water_m2 / self.channel_area_m2) * whole
+        }
+    }
 }
 
 /// What acts on the land during a step.
@@ -95,6 +113,7 @@ pub struct Carver {
     load_m: Vec<f64>,
     deposition: Deposition,
     coast: Coast,
+    slide: Slide,
 }
 
 impl Carver {
@@ -111,6 +130,7 @@ impl Carver {
             load_m: zeros(),
             deposition: Deposition::default(),
             coast: Coast::default(),
+            slide: Slide::default(),
         }
     }
 
@@ -131,6 +151,9 @@ impl Carver {
         let lifted_m = self.lift(law, forcing, height_m, years);
         self.weigh(law, forcing, years);
         self.erode(law, forcing, height_m, years);
+        if law.slides_all_round {
+            self.fail(law, height_m);
+        }
         let left_m = self.carry(law, forcing, height_m);
         let left_m = left_m + self.creep(law, forcing, height_m, years);
         Moved { lifted_m, left_m }
@@ -199,7 +222,7 @@ impl Carver {
             for (x, ratio) in row.iter_mut().enumerate() {
                 let ease = forcing.ease.map_or(1.0, |ease| ease[at + x] as f64);
                 let strength = ease * per_length[way[at + x] as usize & 7];
-                *ratio = strength * power(water[at + x], law.area_exponent);
+                *ratio = strength * law.pull(water[at + x]);
                 if linear && law.deposition == 0.0 {
                     *ratio = 1.0 / (1.0 + *ratio);
                 }
@@ -239,6 +262,18 @@ impl Carver {
         ground.for_each(|((z, &surface), &raised)| *z = surface.min(raised));
     }
 
+    /// Slopes that stand too steep in any direction. What falls joins the load of its cell.
+    fn fail(&mut self, law: &Law, height_m: &mut [f64]) {
+        let mut rest: Vec<bool> = self.router.ways().iter().map(|&way| way == ROOT).collect();
+        for &(i, base) in &self.base.edge {
+            rest[i] = base == Base::Fixed;
+        }
+        self.slide.settle(self.grid(), law.steepest, &rest, &mut self.surface_m);
+        height_m.par_iter_mut().zip(&self.surface_m).zip(&rest).for_each(|((z, &surface), &rest)| {
+            *z = if rest { *z } else { z.min(surface) };
+        });
+    }
+
     /// Levels of the outlets.
     fn set_base(&mut self, law: &Law, forcing: &Forcing, years: f64) {
         let sea_m = forcing.sea_level_m;
@@ -255,7 +290,7 @@ impl Carver {
                     // Beyond the rim the river runs at least as far as its catchment is wide.
                     let length = water.max(self.grid().cell_area_m2()).sqrt();
                     let slope = slope.min(law.steepest);
-                    let rate = ease * law.erodibility * years * power(water, law.area_exponent);
+                    let rate = ease * law.erodibility * years * law.pull(water);
                     let cut = rate * libm::pow(slope.min(above.max(0.0) / length), law.slope_exponent);
                     let most = above.max(0.0) * (rate / length) / (1.0 + rate / length);
                     // Nor does the slope say anything of what lies further up than that.

@@ -5,6 +5,7 @@ mod carver;
 mod coast;
 mod deposition;
 mod law;
+mod slide;
 mod solver;
 #[cfg(test)]
 mod tests;
@@ -66,6 +67,12 @@ pub struct StreamPowerParams {
     /// Steepest slope down to a river; what is steeper slides.
     #[schemars(range(min = 1.0, max = 89.0), extend("x-unit" = "deg", "x-effect" = "steeper walls"))]
     pub talus_angle_deg: f64,
+    /// What is too steep slides in whatever direction it faces, not only down the way of its water.
+    #[schemars(extend("x-effect" = "slopes without stripes in the eight directions of the raster; for cells under some 100 m"))]
+    pub talus_all_round: bool,
+    /// Catchment at which channels begin; where it is smaller, slopes creep and slide, but hardly any water cuts them.
+    #[schemars(range(min = 0.0, max = 1e9), extend("x-unit" = "m2", "x-effect" = "smooth slopes between fewer gullies"))]
+    pub channel_area_m2: f64,
     /// Longest step.
     #[schemars(range(min = 0.001, max = 10000.0), extend("x-unit" = "ky", "x-effect" = "faster, blurs the moment a valley is cut"))]
     pub step_kyr: f64,
@@ -90,6 +97,8 @@ impl Default for StreamPowerParams {
             diffusivity_m2_per_yr: 0.01,
             marine_reach_km: 15.0,
             talus_angle_deg: 35.0,
+            talus_all_round: false,
+            channel_area_m2: 0.0,
             step_kyr: 100.0,
             rim: Rim::Free,
             coupled: false,
@@ -105,6 +114,8 @@ impl StreamPowerParams {
             area_exponent: self.m,
             slope_exponent: self.n,
             deposition: self.deposition,
+            channel_area_m2: self.channel_area_m2,
+            slides_all_round: self.talus_all_round,
             steepest: libm::tan(self.talus_angle_deg.to_radians()),
             diffusivity_m2_per_yr: self.diffusivity_m2_per_yr,
             marine_reach_m: 1e3 * self.marine_reach_km,
