@@ -2,7 +2,8 @@
 //!
 //! A free rim is drained as if the land went on beyond it with the slope it has there: where that is the steepest way down,
 //! the water leaves at a mouth. A mouth is cut with that slope, but never with more than would reach the sea within the
-//! length of the catchment, so that it sinks towards the sea and not below.
+//! length of the catchment, so that it sinks towards the sea and not below. Where the rim is held it sinks by no more than
+//! uplift raised it.
 
 use crate::{
     flow::{Compass, LENGTHS},
@@ -43,8 +44,10 @@ impl BaseLevel {
             for i in rim_cells(grid).filter(|i| gates.binary_search(i).is_err()) {
                 match rim {
                     Rim::Fixed => self.edge.push((i, Base::Fixed)),
-                    Rim::Free if self.outlet[i] => {}
-                    Rim::Free => self.edge.extend(mouth(&compass, height_m, i).map(|slope| (i, Base::Mouth(slope)))),
+                    Rim::Free | Rim::Held if self.outlet[i] => {}
+                    Rim::Free | Rim::Held => {
+                        self.edge.extend(mouth(&compass, height_m, i).map(|slope| (i, Base::Mouth(slope))))
+                    }
                 }
             }
         }

@@ -238,7 +238,7 @@ impl Carver {
     /// The network from its outlets up: `height_m` becomes the eroded ground, `surface_m` that with the water on it.
     fn erode(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64], years: f64) {
         self.surface_m.copy_from_slice(&self.raised_m);
-        self.set_base(law, forcing, years);
+        self.set_base(law, forcing, height_m, years);
         let (router, ratio) = (&self.router, &self.ratio);
         let steepest = LENGTHS.map(|cells| cells * self.grid().cell_m * law.steepest);
         if law.deposition > 0.0 {
@@ -275,7 +275,7 @@ impl Carver {
     }
 
     /// Levels of the outlets.
-    fn set_base(&mut self, law: &Law, forcing: &Forcing, years: f64) {
+    fn set_base(&mut self, law: &Law, forcing: &Forcing, height_m: &[f64], years: f64) {
         let sea_m = forcing.sea_level_m;
         if self.base.sea {
             let (way, surface) = (self.router.ways(), &mut self.surface_m);
@@ -294,7 +294,8 @@ impl Carver {
                     let cut = rate * libm::pow(slope.min(above.max(0.0) / length), law.slope_exponent);
                     let most = above.max(0.0) * (rate / length) / (1.0 + rate / length);
                     // Nor does the slope say anything of what lies further up than that.
-                    self.raised_m[i] - cut.min(most).min(slope * length)
+                    let sunk = self.raised_m[i] - cut.min(most).min(slope * length);
+                    if law.rim == Rim::Held { sunk.max(height_m[i].min(self.raised_m[i])) } else { sunk }
                 }
                 Base::Fixed => self.raised_m[i].max(sea_m),
             };

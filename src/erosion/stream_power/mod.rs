@@ -32,6 +32,8 @@ pub enum Rim {
     /// The land goes on beyond it: rivers leave with the slope they arrive with.
     #[default]
     Free,
+    /// As free, but rivers leave no lower than they did: for windows, whose surroundings do not sink away.
+    Held,
     /// A base level that keeps its height.
     Fixed,
 }
@@ -77,7 +79,7 @@ pub struct StreamPowerParams {
     #[schemars(range(min = 0.001, max = 10000.0), extend("x-unit" = "ky", "x-effect" = "faster, blurs the moment a valley is cut"))]
     pub step_kyr: f64,
     /// What the rim of an open map is.
-    #[schemars(extend("x-effect" = "fixed: the rim keeps its height and what reaches it is gone"))]
+    #[schemars(extend("x-effect" = "held: rivers leave no lower than they did, as in a window; fixed: the rim keeps its height and what reaches it is gone"))]
     pub rim: Rim,
     /// Steps in turn with the plates stage before it; uplift then also moves the sea floor.
     #[schemars(extend("x-effect" = "ranges are carved while they rise"))]

@@ -86,11 +86,7 @@ impl Slide {
 /// The height at which the slope to the lower neighbour along each axis is `rise` a cell.
 fn bound(a: f64, b: f64, rise: f64) -> f64 {
     let apart = (a - b).abs();
-    if apart >= rise {
-        a.min(b) + rise
-    } else {
-        0.5 * (a + b + (2.0 * rise * rise - apart * apart).sqrt())
-    }
+    if apart >= rise { a.min(b) + rise } else { 0.5 * (a + b + (2.0 * rise * rise - apart * apart).sqrt()) }
 }
 
 #[cfg(test)]
@@ -124,7 +120,8 @@ mod tests {
             let grid = Grid { width: 64, height: 48, cell_m: 10.0, edges };
             let wave = |i: usize| {
                 let (x, y) = grid.cell_of(i);
-                40.0 * (x as f64 * std::f64::consts::TAU / 64.0).sin() + 20.0 * (y as f64 * std::f64::consts::TAU / 48.0).cos()
+                40.0 * (x as f64 * std::f64::consts::TAU / 64.0).sin()
+                    + 20.0 * (y as f64 * std::f64::consts::TAU / 48.0).cos()
             };
             let gentle: Vec<f64> = (0..grid.cells()).map(wave).collect();
             let mut z = gentle.clone();

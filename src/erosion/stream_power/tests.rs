@@ -95,6 +95,73 @@ fn a_profile_in_balance_has_the_slopes_of_flint_s_law() {
 }
 
 #[test]
+fn above_the_channel_heads_a_profile_in_balance_steepens_as_the_channels_end() {
+    let (grid, area, rain) = channel(300.0, (6.69, 1.67));
+    let uplift = vec![1.0f32; 101];
+    let law = Law { erodibility: 1e-3, channel_area_m2: 1e6, ..LAW };
+    let forcing = Forcing { sea_level_m: 0.0, uplift_mm_per_yr: Some(&uplift), rain_mm_per_yr: Some(&rain), ..DRY };
+    let mut z: Vec<f64> = (0..101).map(|i| if i == 0 { -1e9 } else { 1e-3 * i as f64 }).collect();
+    run(&law, &forcing, grid, &mut z, 1e4, 4000);
+    z[0] = 0.0;
+    for i in 1..101 {
+        let slope = (z[i] - z[i - 1]) / 300.0;
+        // Flint's law over the share of the water that runs in channels.
+        let want = area[i].powf(-0.5) / (1.0 - (-area[i] / 1e6).exp());
+        assert!((slope / want - 1.0).abs() < 1e-5, "cell {i}: {slope} for {want}");
+    }
+    let share = |i: usize| 1.0 - (-area[i] / 1e6).exp();
+    assert!(share(100) < 0.1 && share(1) > 1.0 - 1e-9, "{} {}", share(100), share(1));
+}
+
+#[test]
+fn what_slides_all_round_is_carried_off_and_leaves_no_steeper_slope() {
+    for (sea_level_m, deposition) in [(-1e9, 0.0), (-1e9, 1.0), (250.0, 0.0), (250.0, 1.0)] {
+        let grid = Grid::new(60, 50, 3e3, Edges::Open);
+        let law =
+            Law { rim: Rim::Free, deposition, steepest: 0.7, slides_all_round: true, channel_area_m2: 1e4, ..LAW };
+        let forcing = Forcing { sea_level_m, ..DRY };
+        let mut z = hills(grid);
+        z.iter_mut().for_each(|z| *z = 300.0 + 4.0 * (*z - 300.0));
+        let before = sum(&z);
+        let moved = run(&law, &forcing, grid, &mut z, 1e3, 3);
+        let residual = sum(&z) - before + moved.left_m;
+        assert!(residual.abs() < 1e-13 * before.abs(), "{residual}");
+        assert!(moved.left_m > 0.0 || sea_level_m > 0.0);
+        let mut worst = 0.0f64;
+        for y in 1..49 {
+            for x in 1..59 {
+                let fall =
+                    |dx: isize, dy: isize| z[grid.index(x, y)] - z[grid.index(grid.column(x, dx), grid.row(y, dy))];
+                let (a, b) = (fall(-1, 0).max(fall(1, 0)).max(0.0), fall(0, -1).max(fall(0, 1)).max(0.0));
+                if z[grid.index(x, y)] > sea_level_m + 1.0 && deposition == 0.0 {
+                    worst = worst.max(a.hypot(b) / grid.cell_m);
+                }
+            }
+        }
+        // Foot of a slope in the sea: the slope of what stands out is from the water on.
+        assert!(worst < 0.7 + 1e-3 || sea_level_m > 0.0, "{worst}");
+    }
+}
+
+#[test]
+fn a_held_rim_lets_rivers_leave_no_lower_than_they_did() {
+    let grid = Grid::new(64, 64, 64e3, Edges::Open);
+    let uplift = vec![0.5f32; grid.cells()];
+    let forcing = Forcing { sea_level_m: -2e3, uplift_mm_per_yr: Some(&uplift), ..DRY };
+    let start = hills(grid);
+    let lowest = |rim: Rim| {
+        let mut z = start.clone();
+        run(&Law { rim, erodibility: 3e-6, ..LAW }, &forcing, grid, &mut z, 1e5, 60);
+        let lowered = z.iter().zip(&start).map(|(z, start)| z - start).fold(f64::MAX, f64::min);
+        (lowered, sum(&z) / z.len() as f64)
+    };
+    let ((free, _), (held, mean)) = (lowest(Rim::Free), lowest(Rim::Held));
+    // Some cell inside may be cut deeper than it was; no rim sinks away beneath it.
+    assert!(free < -300.0 && held > -300.0, "{free} {held}");
+    assert!(mean < sum(&start) / start.len() as f64 + 0.9 * 3000.0, "{mean}");
+}
+
+#[test]
 fn a_knickpoint_travels_at_the_speed_of_its_water() {
     // All water comes from the head, so the speed K·A^m is the same everywhere; a step of 100 m starts at the sea.
     let grid = Grid { width: 101, height: 1, cell_m: 100.0, edges: Edges::Closed };
