@@ -149,15 +149,15 @@ fn a_held_rim_lets_rivers_leave_no_lower_than_they_did() {
     let uplift = vec![0.5f32; grid.cells()];
     let forcing = Forcing { sea_level_m: -2e3, uplift_mm_per_yr: Some(&uplift), ..DRY };
     let start = hills(grid);
+    let least = |z: &[f64]| z.iter().copied().fold(f64::MAX, f64::min);
     let lowest = |rim: Rim| {
         let mut z = start.clone();
         run(&Law { rim, erodibility: 3e-6, ..LAW }, &forcing, grid, &mut z, 1e5, 60);
-        let lowered = z.iter().zip(&start).map(|(z, start)| z - start).fold(f64::MAX, f64::min);
-        (lowered, sum(&z) / z.len() as f64)
+        (least(&z), sum(&z) / z.len() as f64)
     };
     let ((free, _), (held, mean)) = (lowest(Rim::Free), lowest(Rim::Held));
-    // Some cell inside may be cut deeper than it was; no rim sinks away beneath it.
-    assert!(free < -300.0 && held > -300.0, "{free} {held}");
+    assert!(free < least(&start) - 100.0 && held >= least(&start), "{free} {held} {}", least(&start));
+    // Held is not walled in: the land does not keep all that uplift gave it.
     assert!(mean < sum(&start) / start.len() as f64 + 0.9 * 3000.0, "{mean}");
 }
 
