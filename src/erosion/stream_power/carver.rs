@@ -5,7 +5,7 @@
 //!
 //! A cell that ends below its receiver's water, in a lake or on ground that rose too little, keeps its ground: it is not
 //! eroded, and the water above it is the level that its donors fall to. So a lake falls as its outlet is cut. A lake takes the
-//! sediment that arrives until it is full.
+//! sediment that arrives until it is full, the lowest places first.
 
 use rayon::prelude::*;
 
@@ -19,6 +19,7 @@ use super::{
     base::{Base, BaseLevel},
     coast::{self, Coast},
     deposition::{Deposition, Slopes},
+    lake,
     law::settle,
     slide::Slide,
 };
@@ -327,9 +328,7 @@ impl Carver {
         let in_lake = |i: usize| way[i] != ROOT && surface[i] > height_m[i];
         let laid: Vec<(usize, f64)> =
             (0..height_m.len()).into_par_iter().filter(|&i| in_lake(i)).map(|i| (i, load[i])).collect();
-        for (i, laid) in laid {
-            height_m[i] += laid;
-        }
+        lake::settle(&self.router, &laid, height_m);
         let mut left_m = 0.0;
         for &(i, _) in &self.base.edge {
             left_m += std::mem::take(&mut self.load_m[i]);

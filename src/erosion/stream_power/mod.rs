@@ -4,6 +4,7 @@ mod base;
 mod carver;
 mod coast;
 mod deposition;
+mod lake;
 mod law;
 mod slide;
 mod solver;
