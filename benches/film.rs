@@ -43,7 +43,7 @@ fn drawing(c: &mut Criterion) {
         let mut animation = Animation::new(world.grid, &options());
         group.bench_function(BenchmarkId::new("shot", size), |b| b.iter(|| animation.shot(&world).unwrap()));
         let to = animation.shot(&world).unwrap();
-        let from = to.before();
+        let from = to.clone();
         let mut picture = vec![0; animation.bytes()];
         let words = Words { caption: "Plates", clock: "12.4 My" };
         group.bench_function(BenchmarkId::new("picture", size), |b| {

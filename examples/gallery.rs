@@ -18,7 +18,7 @@ use upthrust::{
     },
     recipe::{self, Overrides, Plan, Preset},
     relief::{self, Options, View},
-    timeline::{Moment, Sink, Timeline},
+    timeline::{Interest, Moment, Sink, Timeline},
     world::{Layer, World},
 };
 
@@ -170,10 +170,11 @@ struct Album {
 }
 
 impl Sink for Album {
-    fn wants(&mut self, moment: &Moment) -> bool {
-        moment.done >= self.worlds.len() as f64 / (PANELS - 1) as f64
+    fn wants(&mut self, moment: &Moment) -> Interest {
+        let due = moment.done >= self.worlds.len() as f64 / (PANELS - 1) as f64
             || self.worlds.is_empty()
-            || moment.stage_over() && self.worlds.len() < PANELS
+            || moment.stage_over() && self.worlds.len() < PANELS;
+        Interest::Whole.when(due)
     }
 
     fn take(&mut self, world: &World, _: &Moment) -> Result<(), String> {
@@ -213,8 +214,8 @@ struct Scales {
 }
 
 impl Sink for Scales {
-    fn wants(&mut self, moment: &Moment) -> bool {
-        moment.stage_over()
+    fn wants(&mut self, moment: &Moment) -> Interest {
+        Interest::Whole.when(moment.stage_over())
     }
 
     fn take(&mut self, world: &World, _: &Moment) -> Result<(), String> {

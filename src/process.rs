@@ -36,7 +36,7 @@ pub trait Process: Send {
         *grid
     }
 
-    /// Whether the layers stand for the present after every step, also without [`Process::publish`].
+    /// Whether the ground is that of the present after every step, also without [`Process::publish`].
     fn up_to_date(&self) -> bool {
         true
     }

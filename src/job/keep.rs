@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::{
     grid::Grid,
-    timeline::{Moment, Sink},
+    timeline::{Interest, Moment, Sink},
     world::{
         Layer, World,
         store::{Frame, Recorder, StoreError},
@@ -66,13 +66,15 @@ pub(super) fn after(overall: f64) -> f64 {
 }
 
 impl Sink for KeepSink {
-    fn wants(&mut self, moment: &Moment) -> bool {
+    fn wants(&mut self, moment: &Moment) -> Interest {
         let next = *self.next.get_or_insert_with(|| {
             // A resumed run goes on with the frames of the one before.
             let last = self.recorders.last().and_then(|recorder| recorder.frames().last());
             last.map_or(0.0, |frame| after((frame.stage as f64 + frame.done) / moment.stages as f64))
         });
-        moment.stage_over() || moment.overall() >= next
+        let heights_alone = self.layers == [Layer::Height];
+        let wanted = if heights_alone { Interest::Ground } else { Interest::Whole };
+        wanted.when(moment.stage_over() || moment.overall() >= next)
     }
 
     fn take(&mut self, world: &World, moment: &Moment) -> Result<(), String> {

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use super::{JobError, keep};
 use crate::{
     measure::{Glance, main_stems},
-    timeline::{Moment, Sink},
+    timeline::{Interest, Moment, Sink},
     world::{Layer, World},
 };
 
@@ -161,12 +161,8 @@ fn unpack(sums: &[u64]) -> Option<Glance> {
 }
 
 impl Sink for SeriesSink {
-    fn wants(&mut self, _moment: &Moment) -> bool {
-        false
-    }
-
-    fn glances(&mut self, moment: &Moment) -> bool {
-        self.notes.due(moment, ROWS)
+    fn wants(&mut self, moment: &Moment) -> Interest {
+        Interest::Passing.when(self.notes.due(moment, ROWS))
     }
 
     fn take(&mut self, world: &World, moment: &Moment) -> Result<(), String> {
@@ -208,18 +204,14 @@ impl ProfileSink {
 }
 
 impl Sink for ProfileSink {
-    fn wants(&mut self, _moment: &Moment) -> bool {
-        false
-    }
-
-    fn glances(&mut self, moment: &Moment) -> bool {
+    fn wants(&mut self, moment: &Moment) -> Interest {
         if !self.with_frames {
-            return self.notes.due(moment, PROFILED);
+            return Interest::Passing.when(self.notes.due(moment, PROFILED));
         }
         // When frames are kept, profiles are too.
         let overall = |note: &Note| (note.stage as f64 + f64::from_bits(note.done)) / moment.stages as f64;
         let next = self.notes.last.as_ref().map_or(0.0, |note| keep::after(overall(note)));
-        moment.stage_over() || moment.overall() >= next
+        Interest::Passing.when(moment.stage_over() || moment.overall() >= next)
     }
 
     fn take(&mut self, world: &World, moment: &Moment) -> Result<(), String> {
@@ -272,7 +264,7 @@ mod tests {
         let mut profiles = ProfileSink::begin(beside, from, false).unwrap();
         for step in steps {
             for sink in [&mut series as &mut dyn Sink, &mut profiles] {
-                if sink.glances(&moment(step)) {
+                if sink.wants(&moment(step)) > Interest::None {
                     sink.take(&world(1000 * step), &moment(step)).unwrap();
                 }
             }
@@ -314,7 +306,7 @@ mod tests {
         let mut rows = 0;
         for step in 1..=20_000u64 {
             let moment = Moment { done: step as f64 / 20_000.0, ..moment(step) };
-            if sink.glances(&moment) {
+            if sink.wants(&moment) > Interest::None {
                 sink.take(&World::new(Grid::new(1, 1, 1.0, Edges::Open), 0.0), &moment).unwrap();
                 rows += 1;
             }

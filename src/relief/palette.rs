@@ -47,7 +47,20 @@ impl Encoder {
     /// One colour.
     #[inline(always)]
     pub fn bytes(&self, rgb: Rgb) -> [u8; 3] {
-        each(|c| self.table[usize::from((rgb[c].clamp(0.0, 1.0) * (Self::SIZE - 1) as f32 + 0.5) as u16)])
+        each(|c| self.byte(Self::place(rgb[c])))
+    }
+
+    /// Where the byte of a linear value stands.
+    #[inline(always)]
+    pub fn place(value: f32) -> u16 {
+        // By way of a signed number, which processors turn many of at once.
+        (value.clamp(0.0, 1.0) * (Self::SIZE - 1) as f32 + 0.5) as i32 as u16
+    }
+
+    /// The byte at a place.
+    #[inline(always)]
+    pub fn byte(&self, place: u16) -> u8 {
+        self.table[usize::from(place)]
     }
 }
 

@@ -187,16 +187,20 @@ impl Brush {
 /// A colour under light: shadows cool, light warm, as on painted maps.
 #[inline(always)]
 pub fn lit(colour: Rgb, tone: f32) -> Rgb {
+    each(|c| lit_part(c, colour[c], tone))
+}
+
+/// One of a colour's parts, red, green or blue, under light.
+#[inline(always)]
+pub fn lit_part(c: usize, part: f32, tone: f32) -> f32 {
     const SHADOW: Rgb = [0.10, 0.12, 0.22];
     const WARM: Rgb = [1.0, 0.97, 0.88];
     if tone < 0.0 {
-        each(|c| colour[c] * (1.0 + tone * (1.0 - SHADOW[c])))
+        part * (1.0 + tone * (1.0 - SHADOW[c]))
     } else {
         // More light on the same colour first, so that it keeps its strength; a little glare on top.
-        each(|c| {
-            let bright = colour[c] * (1.0 + 0.75 * tone * WARM[c]);
-            bright + (WARM[c] - bright).max(0.0) * tone * 0.20
-        })
+        let bright = part * (1.0 + 0.75 * tone * WARM[c]);
+        bright + (WARM[c] - bright).max(0.0) * tone * 0.20
     }
 }
 

@@ -90,7 +90,7 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// Whether the world is up to date with all of them after a step.
+    /// Whether the ground is up to date with all of them after a step.
     pub fn up_to_date(&self) -> bool {
         self.members.iter().all(|member| member.process.up_to_date())
     }

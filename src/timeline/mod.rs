@@ -41,16 +41,31 @@ impl Moment<'_> {
     }
 }
 
+/// How much of the world a sink wants to see at a moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Interest {
+    /// Nothing.
+    None,
+    /// The ground, if it is up to date anyway.
+    Passing,
+    /// The ground as it is now; what lies on it may be as the last step found it.
+    Ground,
+    /// Every layer and table as it is now.
+    Whole,
+}
+
+impl Interest {
+    /// This, where it is due.
+    pub fn when(self, due: bool) -> Self {
+        if due { self } else { Self::None }
+    }
+}
+
 /// What takes frames from a running timeline: a film, a store, a preview.
 pub trait Sink {
-    /// Whether it wants the world at this moment. Asked after every step; a stage brings its layers up to date only for
+    /// What it wants of the world at this moment. Asked after every step; a stage brings its layers up to date only for
     /// a frame that somebody wants, and when it is over.
-    fn wants(&mut self, moment: &Moment) -> bool;
-
-    /// Whether it takes the world, where it did not want it, because its layers are up to date all the same.
-    fn glances(&mut self, _moment: &Moment) -> bool {
-        false
-    }
+    fn wants(&mut self, moment: &Moment) -> Interest;
 
     /// Takes a frame; an error, said in one line, stops the run.
     fn take(&mut self, world: &World, moment: &Moment) -> Result<(), String>;

@@ -9,7 +9,7 @@ use crate::{
 };
 
 use super::{
-    Moment, Sink, StageRecord,
+    Interest, Moment, Sink, StageRecord,
     checkpoint::{Checkpoint, CheckpointError, Checkpoints, Position},
     group::{Failure, Group},
 };
@@ -234,14 +234,16 @@ impl<'w> Watch<'w, '_> {
     /// Publishes where a frame is wanted or the stage is over, and hands the frame on.
     fn show(&mut self, group: &mut Group, world: &mut World, at: &Position) -> Result<(), TimelineError> {
         let moment = self.moment(at.step, at.done, world);
-        let wanting: Vec<bool> = self.sinks.iter_mut().map(|sink| sink.wants(&moment)).collect();
-        let published = moment.stage_over() || wanting.contains(&true);
+        let wanted: Vec<Interest> = self.sinks.iter_mut().map(|sink| sink.wants(&moment)).collect();
+        let current = if group.up_to_date() { Interest::Ground } else { Interest::None };
+        let most = wanted.iter().copied().max().filter(|&most| most > Interest::Passing);
+        let published = moment.stage_over() || most.is_some_and(|most| most > current);
         if published {
             group.publish(world).map_err(|e| stopped(at.step, e))?;
         }
-        let shown = published || group.up_to_date();
-        for (sink, wants) in self.sinks.iter_mut().zip(wanting) {
-            if wants || shown && sink.glances(&moment) {
+        let least = if published || current == Interest::Ground { Interest::Passing } else { Interest::Ground };
+        for (sink, wanted) in self.sinks.iter_mut().zip(wanted) {
+            if wanted >= least {
                 sink.take(world, &moment).map_err(TimelineError::Sink)?;
             }
         }
@@ -271,8 +273,8 @@ mod tests {
     struct Every(u64, Vec<(usize, u64, f32)>);
 
     impl Sink for Every {
-        fn wants(&mut self, moment: &Moment) -> bool {
-            moment.step.is_multiple_of(self.0)
+        fn wants(&mut self, moment: &Moment) -> Interest {
+            Interest::Whole.when(moment.step.is_multiple_of(self.0))
         }
 
         fn take(&mut self, world: &World, moment: &Moment) -> Result<(), String> {

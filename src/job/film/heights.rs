@@ -9,7 +9,7 @@ use crate::{
     export::{self, HeightRange, video::NumberedFolder},
     job::JobError,
     recipe::Plan,
-    timeline::{Moment, Sink},
+    timeline::{Interest, Moment, Sink},
     world::World,
 };
 
@@ -103,8 +103,9 @@ impl HeightFrames {
 }
 
 impl Sink for HeightFrames {
-    fn wants(&mut self, moment: &Moment) -> bool {
-        self.failure.is_none() && (moment.stage_over() || moment.step.is_multiple_of(self.every))
+    fn wants(&mut self, moment: &Moment) -> Interest {
+        let due = moment.stage_over() || moment.step.is_multiple_of(self.every);
+        Interest::Ground.when(due && self.failure.is_none())
     }
 
     fn take(&mut self, world: &World, moment: &Moment) -> Result<(), String> {

@@ -26,9 +26,12 @@ use super::JobError;
 use crate::{
     export::{ExportError, video::Encoder},
     grid::Grid,
-    relief::film::{Animation, Options, Shot, Words},
-    timeline::{Checkpoint, Moment},
-    world::World,
+    relief::{
+        View,
+        film::{Animation, Options, Shot, Words},
+    },
+    timeline::{Checkpoint, Interest, Moment},
+    world::{Layer, World},
 };
 use pace::Clip;
 
@@ -97,11 +100,14 @@ impl Film {
         self.flat_before = false;
     }
 
-    /// Whether the film needs the world at this moment: where a picture is due, and where a stage ends.
-    pub fn wants(&self, moment: &Moment) -> bool {
+    /// What the film needs of the world at this moment: where a picture is due, and where a stage ends. Weather may be
+    /// that which the last step found: it changes less than the colours tell apart.
+    pub fn wants(&self, moment: &Moment) -> Interest {
         let (at, next) =
             if moment.stage == self.stage { (self.place(moment, self.began_yr), self.next) } else { (0.0, 0.0) };
-        moment.stage_over() || at + SLACK >= next
+        let ground_alone = matches!(self.options.view, View::Relief | View::Layer(Layer::Height));
+        let wanted = if ground_alone { Interest::Ground } else { Interest::Whole };
+        wanted.when(moment.stage_over() || at + SLACK >= next)
     }
 
     /// Where a moment stands in its clip, in pictures.

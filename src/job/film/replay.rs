@@ -10,7 +10,7 @@ use crate::{
     job::{Event, JobError, open_world},
     recipe::{Overrides, Plan, Source},
     relief::{CLIMATE, View},
-    timeline::{Moment, TimelineError},
+    timeline::{Interest, Moment, TimelineError},
     world::{
         World,
         store::{Provenance, Recording},
@@ -40,7 +40,7 @@ pub fn replay(
         let label = planned.clips.get(frame.stage).map_or("", |clip| clip.caption.as_str());
         let moment =
             Moment { stage: frame.stage, stages, label, step: frame.step, done: frame.done, time_yr: frame.time_yr };
-        if film.wants(&moment) {
+        if film.wants(&moment) > Interest::None {
             film.frame(&recording.world(i)?, &moment)?;
         }
         tell(Event::Step(&moment));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::{Film, JobError};
 use crate::{
-    timeline::{Checkpoint, Moment, Sink},
+    timeline::{Checkpoint, Interest, Moment, Sink},
     world::World,
 };
 
@@ -31,8 +31,8 @@ impl FilmSink {
 }
 
 impl Sink for FilmSink {
-    fn wants(&mut self, moment: &Moment) -> bool {
-        self.0.as_ref().is_ok_and(|film| film.wants(moment))
+    fn wants(&mut self, moment: &Moment) -> Interest {
+        self.0.as_ref().map_or(Interest::None, |film| film.wants(moment))
     }
 
     fn take(&mut self, world: &World, moment: &Moment) -> Result<(), String> {

@@ -6,8 +6,8 @@ use super::{
     super::{
         coast,
         layers::SHADING,
-        palette::{Rgb, hex, mix},
-        tint::{Place, lit},
+        palette::{Encoder, Rgb, each, hex, mix},
+        tint::{Place, lit, lit_part},
     },
     Animation, Shot,
 };
@@ -35,17 +35,28 @@ impl Between<'_> {
 
 /// The land's flat colours between two shots, of which at least one has weather.
 struct Ground<'a> {
-    from: Option<&'a [Rgb]>,
-    to: Option<&'a [Rgb]>,
+    from: Option<&'a [Vec<f32>; 3]>,
+    to: Option<&'a [Vec<f32>; 3]>,
     share: f32,
 }
 
 impl Ground<'_> {
-    /// The colour of a pixel; `plain` is that of its height alone.
-    #[inline]
-    fn at(&self, index: usize, plain: impl Fn() -> Rgb) -> Rgb {
-        let own = |colours: Option<&[Rgb]>| colours.map_or_else(&plain, |colours| colours[index]);
-        if self.share >= 1.0 { own(self.to) } else { mix(own(self.from), own(self.to), self.share) }
+    /// The colours of a row; `plain` gives that of a pixel by its height alone.
+    fn row(&self, y: usize, plain: impl Fn(usize) -> Rgb, out: &mut [Vec<f32>; 3]) {
+        if let (Some(from), Some(to)) = (self.from, self.to) {
+            for ((out, from), to) in out.iter_mut().zip(from).zip(to) {
+                Between { from, to, share: self.share }.row(y, out);
+            }
+            return;
+        }
+        let width = out[0].len();
+        for x in 0..width {
+            let own = |colours: Option<&[Vec<f32>; 3]>| {
+                colours.map_or_else(|| plain(x), |colours| each(|c| colours[c][y * width + x]))
+            };
+            let colour = mix(own(self.from), own(self.to), self.share.min(1.0));
+            out.iter_mut().zip(colour).for_each(|(out, part)| out[x] = part);
+        }
     }
 }
 
@@ -55,6 +66,9 @@ struct Room {
     around: Vec<f32>,
     tone: Vec<f32>,
     tints: Vec<u32>,
+    /// The land's flat colours, and where the bytes of the lit ones stand.
+    flat: [Vec<f32>; 3],
+    places: [Vec<u16>; 3],
 }
 
 impl Animation {
@@ -84,7 +98,7 @@ impl Animation {
             }
             _ => None,
         };
-        let ground = Ground { from: from.ground.as_deref(), to: to.ground.as_deref(), share };
+        let ground = Ground { from: from.ground.as_ref(), to: to.ground.as_ref(), share };
         let ground = Some(ground).filter(|ground| ground.from.is_some() || ground.to.is_some());
         // Rivers that come or go fade; those of both are the nearer's.
         let waters = match (&from.waters, &to.waters) {
@@ -95,7 +109,14 @@ impl Animation {
         let this = &*self;
         let room = || {
             let row = || vec![0.0; map.width];
-            Room { form: [row(), row(), row()], around: row(), tone: row(), tints: vec![0; map.width] }
+            Room {
+                form: [row(), row(), row()],
+                around: row(),
+                tone: row(),
+                tints: vec![0; map.width],
+                flat: [row(), row(), row()],
+                places: [0; 3].map(|_| vec![0; map.width]),
+            }
         };
         let rows = picture.par_chunks_exact_mut(this.size[0] * 3).take(map.height).enumerate();
         rows.for_each_init(room, |room, (y, out)| {
@@ -141,20 +162,31 @@ impl Animation {
         }
     }
 
-    /// A row of the relief: most pixels are looked up by height and light, those on the coast and in its glow mixed.
+    /// A row of the relief: most pixels are looked up by height and light, or by weather a row at a time; those on the
+    /// coast and in its glow are mixed.
     fn relief_row(&self, sea_m: f32, ground: Option<&Ground>, y: usize, room: &mut Room, out: &mut [u8]) {
-        let Room { tone, tints, .. } = room;
+        let Room { tone, tints, flat, places, .. } = room;
         let heights = self.heights.row(y);
         self.tints.places(heights, sea_m, tone, tints);
+        if let Some(ground) = ground {
+            ground.row(y, |x| self.scene.land((heights[x] - sea_m).max(0.0)), flat);
+            for (c, (places, flat)) in places.iter_mut().zip(flat.iter()).enumerate() {
+                let parts = flat.iter().zip(tone.iter());
+                places.iter_mut().zip(parts).for_each(|(place, (&part, &tone))| {
+                    *place = Encoder::place(lit_part(c, part, tone));
+                });
+            }
+        }
         let begin = y * self.map.width;
         for (x, pixel) in out.chunks_exact_mut(3).enumerate() {
             let line_px = self.shore.line_px[begin + x];
             // The scene is over a sea at zero.
             let height_m = heights[x] - sea_m;
-            let own = ground.filter(|_| height_m > 0.0 || line_px <= 1.0);
-            let own = own.map(|ground| ground.at(begin + x, || self.scene.land(height_m.max(0.0))));
-            if line_px > 1.0 && !self.brush.on_line(line_px) && own.is_none() {
-                let colour = if self.shore.plain(begin + x) {
+            let own = ground.filter(|_| height_m > 0.0 || line_px <= 1.0).map(|_| each(|c| flat[c][x]));
+            if line_px > 1.0 && !self.brush.on_line(line_px) {
+                let colour = if own.is_some() {
+                    each(|c| self.encoder.byte(places[c][x]))
+                } else if self.shore.plain(begin + x) {
                     self.tints.at(tints[x])
                 } else {
                     self.encoder.bytes(self.brush.glowing(self.tints.sea_at(tints[x]), self.shore.glow(begin + x)))

@@ -1,7 +1,9 @@
 //! What a film keeps of a world.
 
+use rayon::prelude::*;
+
 use super::{
-    super::{ReliefError, View, absent, cover::Cover, palette::Rgb, rivers::Waters, shade},
+    super::{ReliefError, View, absent, cover::Cover, rivers::Waters, shade},
     resample::Resampler,
     soften::soften,
 };
@@ -21,8 +23,8 @@ pub struct Shot {
     pub(super) around: Vec<f32>,
     /// The values of the layer that is shown, where it is not the relief.
     pub(super) values: Option<Vec<f32>>,
-    /// The land's flat colours, where there is weather.
-    pub(super) ground: Option<Vec<Rgb>>,
+    /// The land's flat colours in linear light, red, green and blue apart, where there is weather.
+    pub(super) ground: Option<[Vec<f32>; 3]>,
     /// Rivers and lakes, where the relief is shown and there are any.
     pub(super) waters: Option<Waters>,
     /// Height of the sea, m.
@@ -102,14 +104,18 @@ impl Shot {
     }
 }
 
-/// The land's flat colours.
-fn colours(cover: &Cover, height: &Field<f32>) -> Vec<Rgb> {
-    let mut colours = vec![[0.0; 3]; height.grid.cells()];
-    crate::grid::map_cells(&mut colours, height.grid.width, |x, y| {
-        let i = height.grid.index(x, y);
-        cover.at(i, height.data[i])
+/// The land's flat colours, red, green and blue apart.
+fn colours(cover: &Cover, height: &Field<f32>) -> [Vec<f32>; 3] {
+    let (cells, width) = (height.grid.cells(), height.grid.width);
+    let [mut red, mut green, mut blue] = [0; 3].map(|_| vec![0.0; cells]);
+    let rows = red.par_chunks_mut(width).zip(green.par_chunks_mut(width)).zip(blue.par_chunks_mut(width));
+    rows.enumerate().for_each(|(y, ((red, green), blue))| {
+        for x in 0..width {
+            let i = y * width + x;
+            [red[x], green[x], blue[x]] = cover.at(i, height.data[i]);
+        }
     });
-    colours
+    [red, green, blue]
 }
 
 /// A layer that no process has made yet is empty.
