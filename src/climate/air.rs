@@ -46,15 +46,25 @@ pub fn saturation_mm(sea_degc: f64) -> f64 {
     pressure_pa / (461.5 * (t + 273.15)) * VAPOUR_M
 }
 
-/// What the ground is to the air.
+/// What the ground is to the air, whatever the wind.
 #[derive(Clone, Debug)]
 pub struct Below {
     /// Height over the sea, as smooth as air sees it, m.
     pub height_m: Field<f32>,
+    /// Its slope to the east and to the south.
+    slope: Field<[f64; 2]>,
     /// Share of each cell under the sea.
     pub sea: Field<f32>,
     /// What latitude brings, a row each.
     pub zones: Vec<Zone>,
+}
+
+impl Below {
+    /// Ground of these heights over the sea, m, and shares of sea.
+    pub fn new(height_m: Field<f32>, sea: Field<f32>, zones: Vec<Zone>) -> Self {
+        let slope = Field::from_fn(height_m.grid, |x, y| height_m.gradient(x, y));
+        Self { height_m, slope, sea, zones }
+    }
 }
 
 /// How air behaves.
@@ -171,7 +181,7 @@ impl<'a> Air<'a> {
             let (zone, wind) = (&self.below.zones[y], [self.east[y], 0.5 * (self.south[y] + self.south[y + 1])]);
             for x in 0..self.grid.width {
                 let i = self.grid.index(x, y);
-                let [gx, gy] = self.below.height_m.gradient(x, y);
+                let [gx, gy] = self.below.slope.data[i];
                 let lift = wind[0] * gx + wind[1] * gy;
                 let sea = self.below.sea.data[i] as f64;
                 self.cells[i] = Cell {

@@ -16,11 +16,11 @@ fn habits() -> Habits {
 fn below(grid: Grid, height: impl Fn(f64, f64) -> f64 + Sync, sea: impl Fn(f64, f64) -> bool + Sync) -> Below {
     let at = |x: usize, y: usize| grid.center_m(x, y);
     let params = ClimateParams { wind_from_deg: Some(270.0), latitude_span_deg: Some(0.0), ..Default::default() };
-    Below {
-        height_m: Field::from_fn(grid, |x, y| height(at(x, y)[0], at(x, y)[1]) as f32),
-        sea: Field::from_fn(grid, |x, y| f32::from(sea(at(x, y)[0], at(x, y)[1]))),
-        zones: Zone::rows(&grid, &params),
-    }
+    Below::new(
+        Field::from_fn(grid, |x, y| height(at(x, y)[0], at(x, y)[1]) as f32),
+        Field::from_fn(grid, |x, y| f32::from(sea(at(x, y)[0], at(x, y)[1]))),
+        Zone::rows(&grid, &params),
+    )
 }
 
 fn square(edges: Edges) -> Grid {

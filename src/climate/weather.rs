@@ -97,7 +97,7 @@ fn below(height: &Field<f32>, sea_level_m: f64, params: &ClimateParams) -> Below
     let sea = brought(height.map(|h| f32::from((h as f64) < sea_level_m))).map(|s| s.clamp(0.0, 1.0));
     // At least so much that no single cell shows.
     let sigma = (params.air_km * 1e3 / cell_m).max(0.7);
-    Below { height_m: blur(&land, sigma), sea, zones: Zone::rows(&grid, params) }
+    Below::new(blur(&land, sigma), sea, Zone::rows(&grid, params))
 }
 
 /// Rain on the air's raster, mm/yr, the mean over the winds of a year.

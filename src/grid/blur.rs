@@ -2,63 +2,76 @@
 
 use rayon::prelude::*;
 
-use super::{Edges, Field, for_each_row};
+use super::{Edges, Field, transposed};
+
+/// Columns that are smoothed side by side: a sum that runs down one of them waits for itself, sixteen do not.
+const STRIP: usize = 16;
 
 /// The field smoothed with a Gaussian of `sigma_px` cells; the rim's value continues beyond it.
 pub fn blur(field: &Field<f32>, sigma_px: f64) -> Field<f32> {
     let (w, h) = (field.grid.width, field.grid.height);
     let wrap = field.grid.edges == Edges::Wrap;
-    let mut data = field.data.clone();
-    blur_rows(&mut data, w, sigma_px, wrap);
-    let mut turned = transposed(&data, w, h);
-    blur_rows(&mut turned, h, sigma_px, wrap);
-    Field { grid: field.grid, data: transposed(&turned, h, w) }
+    let boxes = Boxes::new(sigma_px);
+    let along = boxes.down_and_turn(&transposed(&field.data, w, h), [h, w], wrap);
+    let both = boxes.down_and_turn(&along, [w, h], wrap);
+    Field { grid: field.grid, data: transposed(&both, h, w) }
 }
 
-/// The columns of a raster of `w` by `h` cells as rows.
-pub fn transposed<T: Copy + Default + Send + Sync>(data: &[T], w: usize, h: usize) -> Vec<T> {
-    // Several columns at a time, so that every line of memory is read once.
-    const COLUMNS: usize = 16;
-    let mut out = vec![T::default(); data.len()];
-    out.par_chunks_mut((COLUMNS * h).max(1)).enumerate().for_each(|(block, columns)| {
-        let wide = columns.len() / h;
-        for y in 0..h {
-            for (i, &v) in data[y * w + block * COLUMNS..][..wide].iter().enumerate() {
-                columns[i * h + y] = v;
-            }
-        }
-    });
-    out
+/// A box of `2·radius + 1` cells and the share `edge` of one more on either side, three times over.
+struct Boxes {
+    radius: usize,
+    edge: f64,
+    total: f64,
 }
 
-fn blur_rows(data: &mut [f32], width: usize, sigma_px: f64, wrap: bool) {
-    const PASSES: f64 = 3.0;
-    let variance = sigma_px * sigma_px / PASSES;
-    // The whole part of the box, and the weight of one more cell on either side.
-    let r = libm::floor(0.5 * (12.0 * variance + 1.0).sqrt() - 0.5);
-    let edge = (2.0 * r + 1.0) * (r * (r + 1.0) - 3.0 * variance) / (6.0 * (variance - (r + 1.0) * (r + 1.0)));
-    let total = 2.0 * r + 1.0 + 2.0 * edge;
-    let radius = r as usize;
-    for_each_row(data, width, |_, row| {
-        let pad = radius + 1;
-        let mut padded = vec![0.0f32; width + 2 * pad];
-        for _ in 0..PASSES as usize {
-            for (i, value) in padded.iter_mut().enumerate() {
-                let at = i as isize - pad as isize;
-                *value = row[if wrap {
-                    at.rem_euclid(width as isize) as usize
-                } else {
-                    at.clamp(0, width as isize - 1) as usize
-                }];
+impl Boxes {
+    fn new(sigma_px: f64) -> Self {
+        let variance = sigma_px * sigma_px / 3.0;
+        let r = libm::floor(0.5 * (12.0 * variance + 1.0).sqrt() - 0.5);
+        let edge = (2.0 * r + 1.0) * (r * (r + 1.0) - 3.0 * variance) / (6.0 * (variance - (r + 1.0) * (r + 1.0)));
+        Self { radius: r as usize, edge, total: 2.0 * r + 1.0 + 2.0 * edge }
+    }
+
+    /// Smooths down the columns; rows become columns.
+    fn down_and_turn(&self, data: &[f32], [w, h]: [usize; 2], wrap: bool) -> Vec<f32> {
+        let mut out = vec![0.0; data.len()];
+        let room = || [vec![[0.0f32; STRIP]; h], vec![[0.0f32; STRIP]; h]];
+        out.par_chunks_mut((STRIP * h).max(1)).enumerate().for_each_init(room, |[strip, other], (block, columns)| {
+            let wide = columns.len() / h;
+            for (y, row) in strip.iter_mut().enumerate() {
+                row[..wide].copy_from_slice(&data[y * w + block * STRIP..][..wide]);
             }
-            let mut sum: f64 = padded[1..2 * radius + 2].iter().map(|&v| v as f64).sum();
-            for (x, value) in row.iter_mut().enumerate() {
-                let (before, after) = (padded[x] as f64, padded[x + 2 * pad] as f64);
-                *value = ((sum + edge * (before + after)) / total) as f32;
-                sum += after - padded[x + 1] as f64;
+            self.down(strip, other, wrap);
+            self.down(other, strip, wrap);
+            self.down(strip, other, wrap);
+            for (i, column) in columns.chunks_exact_mut(h).enumerate() {
+                column.iter_mut().zip(other.iter()).for_each(|(to, row)| *to = row[i]);
+            }
+        });
+        out
+    }
+
+    fn down(&self, from: &[[f32; STRIP]], to: &mut [[f32; STRIP]], wrap: bool) {
+        let h = from.len() as isize;
+        let reach = self.radius as isize;
+        let row = |y: isize| {
+            let y = if wrap { y.rem_euclid(h) } else { y.clamp(0, h - 1) };
+            &from[y as usize]
+        };
+        let mut sum = [0.0f64; STRIP];
+        for y in -reach..=reach {
+            sum.iter_mut().zip(row(y)).for_each(|(sum, &v)| *sum += v as f64);
+        }
+        for (y, out) in to.iter_mut().enumerate() {
+            let y = y as isize;
+            let (before, first, after) = (row(y - reach - 1), row(y - reach), row(y + reach + 1));
+            for i in 0..STRIP {
+                let after = after[i] as f64;
+                out[i] = ((sum[i] + self.edge * (before[i] as f64 + after)) / self.total) as f32;
+                sum[i] += after - first[i] as f64;
             }
         }
-    });
+    }
 }
 
 #[cfg(test)]

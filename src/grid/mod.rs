@@ -13,8 +13,9 @@ mod field;
 mod parallel;
 mod resample;
 mod sample;
+mod transposed;
 
-pub use blur::{blur, transposed};
+pub use blur::blur;
 pub use contour::{Contour, contour_lines, contour_rings};
 pub use distance::{Nearest, nearest_feature};
 pub use field::Field;
@@ -22,6 +23,7 @@ pub use parallel::{for_each_row, map_cells, max_rows, sum_f64, sum_rows};
 pub(crate) use resample::keys;
 pub use resample::{Places, Points, resample, resample_at};
 pub use sample::{Corners, Stencil, cubic, linear};
+pub use transposed::transposed;
 
 use serde::{Deserialize, Serialize};
 

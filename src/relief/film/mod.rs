@@ -13,7 +13,6 @@ mod resample;
 mod sheet;
 mod shore;
 mod shot;
-mod soften;
 mod tints;
 
 pub use shot::Shot;

@@ -5,10 +5,9 @@ use rayon::prelude::*;
 use super::{
     super::{ReliefError, View, absent, cover::Cover, rivers::Waters, shade},
     resample::Resampler,
-    soften::soften,
 };
 use crate::{
-    grid::{Field, Grid},
+    grid::{Field, Grid, blur},
     world::{Kind, Layer, World},
 };
 
@@ -53,7 +52,7 @@ impl Shot {
         let cover = Some(view).filter(|view| **view == View::Relief);
         let cover = cover.and_then(|_| Cover::of(world, |field| resampler.sum(&[field])));
         let ground = cover.map(|cover| colours(&cover, &height));
-        let copy = |i: usize| soften(&height, shade::sigma_px(&height, i));
+        let copy = |i: usize| blur(&height, shade::sigma_px(&height, i));
         let shares = shade::SCALES.map(|(_, share)| share as f32);
         let fine = copy(0);
         let has_land = height.data.iter().any(|&h| h > sea_m);
