@@ -3,10 +3,17 @@
 //!
 //! The way from a pit to its pass is turned round, so that receivers stay neighbours.
 
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use rayon::prelude::*;
+
 use super::{
     compass::{Compass, opposite},
     router::{PIT, ROOT},
 };
+
+/// Basins that one thread takes at a time.
+const BASINS: usize = 64;
 
 /// A place where two basins touch.
 #[derive(Clone, Copy)]
@@ -23,7 +30,7 @@ struct Pass {
 /// Basins of pits, numbered from 1; 0 is what drains to an outlet by itself.
 #[derive(Default)]
 pub(super) struct Spill {
-    label: Vec<u32>,
+    label: Vec<AtomicU32>,
     /// Cells of all basins, one basin after another.
     cells: Vec<u32>,
     /// Where the cells of basin `b` begin, at `b - 1`.
@@ -41,7 +48,7 @@ impl Spill {
             return;
         }
         self.find_passes(compass, z);
-        self.passes.sort_unstable_by(|a, b| {
+        self.passes.par_sort_unstable_by(|a, b| {
             a.height_m.total_cmp(&b.height_m).then(a.cell.cmp(&b.cell)).then(a.way.cmp(&b.way))
         });
         let tree = lowest_tree(&self.passes, self.basins());
@@ -56,7 +63,7 @@ impl Spill {
     /// Cells whose ground lies below the level of their basin, each with that level.
     pub(super) fn flooded<'a>(&'a self, z: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
         self.cells.iter().filter_map(move |&i| {
-            let (i, level) = (i as usize, self.level_m[self.label[i as usize] as usize]);
+            let (i, level) = (i as usize, self.level_m[self.label[i as usize].load(Relaxed) as usize]);
             (z[i] < level).then_some((i, level))
         })
     }
@@ -64,75 +71,76 @@ impl Spill {
     /// Collects what drains to each pit.
     fn gather_basins(&mut self, compass: &Compass, z: &[f64], way: &mut [u8]) {
         for &i in &self.cells {
-            self.label[i as usize] = 0;
+            self.label[i as usize] = AtomicU32::new(0);
         }
-        self.label.resize(z.len(), 0);
+        self.label.resize_with(z.len(), AtomicU32::default);
+        let pits = find_pits(compass, z, way);
+        let (label, way) = (&self.label, &*way);
+        // Basins share no cell, so that their labels can be written side by side.
+        let blocks: Vec<(Vec<u32>, Vec<usize>)> = pits
+            .par_chunks(BASINS)
+            .enumerate()
+            .map(|(block, pits)| {
+                let (mut cells, mut sizes) = (Vec::new(), Vec::with_capacity(pits.len()));
+                for (&pit, basin) in pits.iter().zip(block * BASINS + 1..) {
+                    let before = cells.len();
+                    gather_basin(pit, compass, way, |i| label[i].store(basin as u32, Relaxed), &mut cells);
+                    sizes.push(cells.len() - before);
+                }
+                (cells, sizes)
+            })
+            .collect();
         self.cells.clear();
         self.first.clear();
         self.first.push(0);
-        let width = compass.grid.width;
-        for y in 0..compass.grid.height {
-            if !way[y * width..][..width].contains(&PIT) {
-                continue;
-            }
-            for pit in y * width..(y + 1) * width {
-                if way[pit] == PIT && self.label[pit] == 0 {
-                    self.gather_basin(pit, compass, z, way);
-                }
-            }
+        let mut end = 0;
+        for (cells, sizes) in blocks {
+            self.cells.extend(cells);
+            self.first.extend(sizes.into_iter().map(|size| {
+                end += size;
+                end
+            }));
         }
-    }
-
-    fn gather_basin(&mut self, pit: usize, compass: &Compass, z: &[f64], way: &mut [u8]) {
-        let basin = self.first.len() as u32;
-        let mut at = self.cells.len();
-        self.label[pit] = basin;
-        self.cells.push(pit as u32);
-        while at < self.cells.len() {
-            let c = self.cells[at] as usize;
-            at += 1;
-            let floor = z[c] == z[pit];
-            compass.each(c, |step, k| {
-                // A flat floor is one pit: its other cells are led to this one.
-                if floor && way[k] == PIT && self.label[k] == 0 && z[k] == z[pit] {
-                    way[k] = opposite(step);
-                }
-                if way[k] == opposite(step) && self.label[k] == 0 {
-                    self.label[k] = basin;
-                    self.cells.push(k as u32);
-                }
-            });
-        }
-        self.first.push(self.cells.len());
     }
 
     /// The lowest pass between any two basins that touch.
     fn find_passes(&mut self, compass: &Compass, z: &[f64]) {
+        let (label, cells, first) = (&self.label, &self.cells, &self.first);
+        let all: Vec<usize> = (1..first.len()).collect();
+        // Where the pass already known from the basin at hand to another one stands; what is older is not believed.
+        let known = || vec![u32::MAX; first.len()];
+        let blocks: Vec<Vec<Pass>> = all
+            .par_chunks(BASINS)
+            .map_init(known, |known, basins| {
+                let mut passes: Vec<Pass> = Vec::new();
+                for &basin in basins {
+                    let begin = passes.len();
+                    for &i in &cells[first[basin - 1]..first[basin]] {
+                        compass.each(i as usize, |way, j| {
+                            let other = label[j].load(Relaxed);
+                            // Each pair is listed by the later of the two.
+                            if other as usize >= basin {
+                                return;
+                            }
+                            let height_m = z[i as usize].max(z[j]);
+                            let pass = Pass { height_m, from: basin as u32, to: other, cell: i, way };
+                            let at = known[other as usize] as usize;
+                            match passes.get_mut(at).filter(|pass| at >= begin && pass.to == other) {
+                                Some(lowest) if height_m < lowest.height_m => *lowest = pass,
+                                Some(_) => (),
+                                None => {
+                                    known[other as usize] = passes.len() as u32;
+                                    passes.push(pass);
+                                }
+                            }
+                        });
+                    }
+                }
+                passes
+            })
+            .collect();
         self.passes.clear();
-        // The pass already known from the basin at hand to another one.
-        let mut known = vec![u32::MAX; self.basins() + 1];
-        let (label, passes) = (&self.label, &mut self.passes);
-        for basin in 1..self.first.len() {
-            let begin = passes.len();
-            for &i in &self.cells[self.first[basin - 1]..self.first[basin]] {
-                compass.each(i as usize, |way, j| {
-                    let other = label[j];
-                    // Each pair is listed by the later of the two.
-                    if other as usize >= basin {
-                        return;
-                    }
-                    let height_m = z[i as usize].max(z[j]);
-                    let pass = Pass { height_m, from: basin as u32, to: other, cell: i, way };
-                    let at = known[other as usize] as usize;
-                    if at < begin || at >= passes.len() {
-                        known[other as usize] = passes.len() as u32;
-                        passes.push(pass);
-                    } else if height_m < passes[at].height_m {
-                        passes[at] = pass;
-                    }
-                });
-            }
-        }
+        blocks.into_iter().for_each(|passes| self.passes.extend(passes));
     }
 
     /// Follows the tree from outside in: fills each basin to its pass, and turns the way from its pit to the pass round.
@@ -174,6 +182,53 @@ impl Spill {
                 reached.push(child);
             }
         }
+    }
+}
+
+/// The cells without a lower neighbour, row by row. A flat floor is one pit: its other cells are led to its first one.
+fn find_pits(compass: &Compass, z: &[f64], way: &mut [u8]) -> Vec<usize> {
+    let width = compass.grid.width;
+    let (mut pits, mut floor) = (Vec::new(), Vec::new());
+    for y in 0..compass.grid.height {
+        let row = y * width..(y + 1) * width;
+        if !way[row.clone()].contains(&PIT) {
+            continue;
+        }
+        for pit in row {
+            if way[pit] != PIT {
+                continue;
+            }
+            pits.push(pit);
+            floor.clear();
+            floor.push(pit);
+            let mut at = 0;
+            while at < floor.len() {
+                compass.each(floor[at], |step, k| {
+                    if way[k] == PIT && z[k] == z[pit] && k != pit {
+                        way[k] = opposite(step);
+                        floor.push(k);
+                    }
+                });
+                at += 1;
+            }
+        }
+    }
+    pits
+}
+
+/// Adds the cells of a pit's basin, and marks them.
+fn gather_basin(pit: usize, compass: &Compass, way: &[u8], mark: impl Fn(usize), cells: &mut Vec<u32>) {
+    let mut at = cells.len();
+    mark(pit);
+    cells.push(pit as u32);
+    while at < cells.len() {
+        compass.each(cells[at] as usize, |step, k| {
+            if way[k] == opposite(step) {
+                mark(k);
+                cells.push(k as u32);
+            }
+        });
+        at += 1;
     }
 }
 

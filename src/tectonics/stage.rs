@@ -21,7 +21,7 @@ use super::{
     partition::{self, Polygon},
     plate::Plate,
     raise::Belt,
-    simulation::{Books, Rules, Simulation},
+    simulation::{Rules, Simulation},
     surface::{Detail, Plains, Surface},
     tables::{self, Drift},
     thesis::Thesis,
@@ -80,15 +80,15 @@ struct Geologic {
     first: Vec<Drift>,
     /// Outlines in body coordinates, m.
     bodies: Vec<Vec<DVec2>>,
-    booked: Books,
     /// The map that others carve, where there are any.
     carved: Option<(Carved, Plains)>,
+    /// The sea level of its next step, where a share of it is to be land, m.
+    level_m: Option<f64>,
 }
 
-/// Where a saved run stood: steps taken, what the ledger has of it, and the map it shares with others.
+/// Where a saved run stood: steps taken, and the map it shares with others.
 struct Resume {
     steps: u64,
-    booked: Books,
     shared: Option<Shared>,
 }
 
@@ -159,33 +159,21 @@ impl Process for Stage {
     }
 
     fn save(&self) -> State {
-        let (steps, booked) = match &self.run {
-            Some(Run::Geologic(run)) => (run.simulation.steps_done(), run.booked),
-            Some(Run::Thesis(run)) => (run.progress().1, Books::default()),
-            None => self.resume.as_ref().map_or((0, Books::default()), |resume| (resume.steps, resume.booked)),
+        let steps = match &self.run {
+            Some(run) => run.progress().1,
+            None => self.resume.as_ref().map_or(0, |resume| resume.steps),
         };
-        let numbers = [booked.start_m3, booked.made_m3, booked.sunk_m3, booked.pending_m3, booked.worn_m3];
-        let blob = steps.to_le_bytes().into_iter().chain(numbers.into_iter().flat_map(f64::to_le_bytes)).collect();
         let mut fields = self.ground.as_ref().map(Ground::save).unwrap_or_default();
         if let Some((expected, worn)) = self.shared() {
             fields.push((EXPECTED.to_owned(), expected.clone()));
             fields.extend(worn.iter().map(|worn| (WORN.to_owned(), worn.clone())));
         }
-        State { fields, blob }
+        State { fields, blob: steps.to_le_bytes().to_vec() }
     }
 
     fn restore(&mut self, state: State, _context: &Context) -> Result<(), ProcessError> {
-        let word = |i: usize| state.blob.get(8 * i..8 * i + 8).and_then(|bytes| bytes.try_into().ok());
         let broken = || ProcessError::Failed("the saved state of the plates is broken".to_owned());
-        let number = |i: usize| word(i).map(f64::from_le_bytes).ok_or_else(broken);
-        let steps = word(0).map(u64::from_le_bytes).ok_or_else(broken)?;
-        let booked = Books {
-            start_m3: number(1)?,
-            made_m3: number(2)?,
-            sunk_m3: number(3)?,
-            pending_m3: number(4)?,
-            worn_m3: number(5)?,
-        };
+        let steps = state.blob[..].try_into().map(u64::from_le_bytes).map_err(|_| broken())?;
         self.ground = Ground::restore(self.placement.blend, &state.fields);
         let named = |wanted: &'static str| state.fields.iter().filter(move |(name, _)| name == wanted);
         let worn: Vec<Field<f32>> = named(WORN).map(|(_, field)| field.clone()).collect();
@@ -194,7 +182,7 @@ impl Process for Stage {
         }
         let shared = named(EXPECTED).next().map(|(_, field)| Shared { expected: field.clone(), worn });
         // A run that was saved before its first step begins like any other.
-        self.resume = self.ground.is_some().then_some(Resume { steps, booked, shared });
+        self.resume = self.ground.is_some().then_some(Resume { steps, shared });
         Ok(())
     }
 }
@@ -270,9 +258,9 @@ impl Run {
             self.advance();
         }
         if let Run::Geologic(run) = self {
-            run.booked = resume.booked;
             if let (Some((carved, _)), Some(Shared { expected, worn })) = (&mut run.carved, &resume.shared) {
                 carved.restore(&run.simulation, params, expected.clone(), worn.clone());
+                run.find_level(params);
             }
         }
         Ok(())
@@ -358,8 +346,7 @@ impl Geologic {
         let first = (0..simulation.plates.len())
             .map(|p| Drift::of(simulation.engine.velocity_at(p, tables::middle(&simulation, p).0)))
             .collect();
-        let booked = Books { start_m3: simulation.books.start_m3, ..Books::default() };
-        Ok(Self { simulation, warp, first, bodies, booked, carved: None })
+        Ok(Self { simulation, warp, first, bodies, carved: None, level_m: None })
     }
 
     fn publish(
@@ -385,6 +372,8 @@ impl Geologic {
                 other => world.set_layer(other, field),
             }
         }
+        // Steps in time belong to the rates that stood there before.
+        world.set_uplift_steps(&[]);
         self.show_tables(world);
         self.book(world, context);
         Ok(())
@@ -404,15 +393,25 @@ impl Geologic {
                 world.remove_layer(layer);
             }
             world.set_layer(Layer::Bedrock, carved.expected().clone());
+            world.set_uplift_steps(&[]);
             book_rock(world, context, before);
         }
         self.carved = Some((carved, plains));
+        self.find_level(params);
+    }
+
+    /// Finds the sea level on the ground as the plates left it, where a share of the map is to be land.
+    fn find_level(&mut self, params: &PlatesParams) {
+        let found = self.carved.as_ref().zip(params.land_share);
+        self.level_m = found.map(|((carved, _), share)| carved.expected().level_above(share));
     }
 
     /// A step between two turns of those who carve.
     fn advance_carved(&mut self, params: &PlatesParams, world: &mut World, context: &Context) {
         let Some((carved, plains)) = &mut self.carved else { return };
         let run = &mut self.simulation;
+        // One who looked at the world between two steps found the level on the carved ground.
+        world.sea_level_m = self.level_m.unwrap_or(world.sea_level_m);
         let wear = carved.read_wear(world, &run.domain);
         run.wear(wear);
         let began_myr = run.time_myr;
@@ -421,9 +420,8 @@ impl Geologic {
         let before = world.rock_m3();
         carved.carry(run, params, plains, span_yr, world);
         book_rock(world, context, before);
-        if let Some(share) = params.land_share {
-            world.sea_level_m = carved.expected().level_above(share);
-        }
+        self.find_level(params);
+        world.sea_level_m = self.level_m.unwrap_or(world.sea_level_m);
     }
 
     /// Shows what the plates know besides the ground, which is up to date after every step.
@@ -438,22 +436,16 @@ impl Geologic {
     }
 
     fn show_tables(&self, world: &mut World) {
-        // Steps in time belong to the rates that stood there before.
-        world.set_uplift_steps(&[]);
         world.set_table(tables::plates(&self.simulation, &self.warp, &self.first));
         world.set_table(tables::outlines(&self.simulation, &self.warp, &self.bodies));
         world.set_table(tables::convergence(&self.simulation));
     }
 
-    fn book(&mut self, world: &mut World, context: &Context) {
+    fn book(&self, world: &mut World, context: &Context) {
         let books = self.simulation.books;
-        world.ledger.book_in(context.stage, Matter::Crust, books.made_m3 - self.booked.made_m3);
-        world.ledger.book_out(context.stage, Matter::Crust, books.sunk_m3 - self.booked.sunk_m3);
-        let worn = books.worn_m3 - self.booked.worn_m3;
-        world.ledger.book_out(context.stage, Matter::Crust, worn.max(0.0));
-        world.ledger.book_in(context.stage, Matter::Crust, (-worn).max(0.0));
+        let (came_in_m3, left_m3) = (books.made_m3 + (-books.worn_m3).max(0.0), books.sunk_m3 + books.worn_m3.max(0.0));
+        world.ledger.set(context.stage, Matter::Crust, came_in_m3, left_m3);
         world.ledger.close(context.stage, Matter::Crust, self.simulation.crust_m3());
-        self.booked = books;
     }
 }
 

@@ -64,6 +64,12 @@ impl Ledger {
         self.account_mut(stage, matter).left_m3 += m3;
     }
 
+    /// Notes what came in and what left since the start of `stage`, in place of what was noted before.
+    pub fn set(&mut self, stage: &str, matter: Matter, came_in_m3: f64, left_m3: f64) {
+        let account = self.account_mut(stage, matter);
+        (account.came_in_m3, account.left_m3) = (came_in_m3, left_m3);
+    }
+
     /// Notes the stock at the start of a stage.
     pub fn open(&mut self, stage: &str, matter: Matter, m3: f64) {
         let account = self.account_mut(stage, matter);

@@ -1,5 +1,6 @@
 //! The same recipe is the same world: for any number of threads to the bit, for any size in its shape.
 
+mod looks;
 mod sizes;
 mod threads;
 
@@ -13,8 +14,12 @@ use upthrust::{
 
 /// A preset grown at a size, with a seed of its own if one is given.
 fn grown(preset: &str, size: &str, seed: Option<u64>) -> World {
-    let overrides = Overrides { size: Some(size.to_owned()), seed, ..Overrides::default() };
-    let plan = Plan::new(&Source::find(preset).unwrap(), &overrides).unwrap();
+    let plan = plan(preset, size, seed);
     let stay = AtomicBool::new(false);
     Timeline::new(&plan, &stay).run(&mut [], &mut |_| ()).unwrap()
+}
+
+fn plan(preset: &str, size: &str, seed: Option<u64>) -> Plan {
+    let overrides = Overrides { size: Some(size.to_owned()), seed, ..Overrides::default() };
+    Plan::new(&Source::find(preset).unwrap(), &overrides).unwrap()
 }

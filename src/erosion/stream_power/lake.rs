@@ -1,20 +1,18 @@
 //! What rivers bring to a lake settles on its floor, lowest places first, so that a lake becomes shallower before it
 //! becomes smaller.
 
-use std::collections::HashMap;
+use rayon::prelude::*;
 
 use crate::flow::Router;
 
 /// Spreads what was laid down in drowned cells over the floors of their lakes: `laid` has each drowned cell with its own
 /// part, m; `height` becomes the floors. A lake is all that drains through one drowned cell to a dry one.
 pub(super) fn settle(router: &Router, laid: &[(usize, f64)], height: &mut [f64]) {
-    let mut floors: Vec<Floor> = Vec::with_capacity(laid.len());
-    let mut lakes = Lakes { router, ends: laid.iter().map(|&(cell, _)| (cell, None)).collect() };
-    for &(cell, laid_m) in laid {
-        floors.push(Floor { lake: lakes.end_of(cell), cell, laid_m });
-    }
-    floors.sort_unstable_by(|a, b| {
-        a.lake.cmp(&b.lake).then(height[a.cell].total_cmp(&height[b.cell])).then(a.cell.cmp(&b.cell))
+    let ends = ends(router, laid);
+    let floor = |(&lake, &(cell, laid_m)): (&u32, &(usize, f64))| Floor { lake, cell, laid_m, height_m: height[cell] };
+    let mut floors: Vec<Floor> = ends.par_iter().zip(laid).map(floor).collect();
+    floors.par_sort_unstable_by(|a, b| {
+        a.lake.cmp(&b.lake).then(a.height_m.total_cmp(&b.height_m)).then(a.cell.cmp(&b.cell))
     });
     for lake in floors.chunk_by(|a, b| a.lake == b.lake) {
         fill(lake, height);
@@ -23,36 +21,40 @@ pub(super) fn settle(router: &Router, laid: &[(usize, f64)], height: &mut [f64])
 
 /// A drowned cell.
 struct Floor {
-    lake: usize,
+    /// The last drowned cell of its lake.
+    lake: u32,
     cell: usize,
     laid_m: f64,
+    /// Height before anything settles, m.
+    height_m: f64,
 }
 
-/// The last drowned cell below each drowned cell, as far as it is known.
-struct Lakes<'a> {
-    router: &'a Router,
-    ends: HashMap<usize, Option<usize>>,
-}
-
-impl Lakes<'_> {
-    fn end_of(&mut self, cell: usize) -> usize {
-        let (mut way, mut at) = (Vec::new(), cell);
-        let end = loop {
-            if let Some(&Some(end)) = self.ends.get(&at) {
-                break end;
-            }
-            way.push(at);
-            let next = self.router.receiver(at);
-            if !self.ends.contains_key(&next) {
-                break at;
-            }
-            at = next;
-        };
-        for at in way {
-            self.ends.insert(at, Some(end));
-        }
-        end
+/// The last drowned cell below each drowned cell.
+fn ends(router: &Router, laid: &[(usize, f64)]) -> Vec<u32> {
+    /// Not known yet.
+    const OPEN: u32 = u32::MAX;
+    // Each drowned cell's place in the list, from 1.
+    let mut places = vec![0u32; router.grid().cells()];
+    for (&(cell, _), place) in laid.iter().zip(1..) {
+        places[cell] = place;
     }
+    let mut ends = vec![OPEN; laid.len()];
+    let mut path = Vec::new();
+    for first in 0..laid.len() {
+        let mut at = first;
+        let end = loop {
+            if ends[at] != OPEN {
+                break ends[at];
+            }
+            path.push(at);
+            match places[router.receiver(laid[at].0)] {
+                0 => break laid[at].0 as u32,
+                next => at = next as usize - 1,
+            }
+        };
+        path.drain(..).for_each(|at| ends[at] = end);
+    }
+    ends
 }
 
 /// Raises the lowest of a lake's cells, which come in the order of their heights, to one level that takes it all.
@@ -61,14 +63,14 @@ fn fill(lake: &[Floor], height: &mut [f64]) {
     if volume <= 0.0 {
         return;
     }
-    let mut level = height[lake[0].cell];
+    let mut level = lake[0].height_m;
     for (count, floor) in lake.iter().enumerate().skip(1) {
-        let wants = (height[floor.cell] - level) * count as f64;
+        let wants = (floor.height_m - level) * count as f64;
         if wants >= volume {
             return raise(&lake[..count], level + volume / count as f64, height);
         }
         volume -= wants;
-        level = height[floor.cell];
+        level = floor.height_m;
     }
     raise(lake, level + volume / lake.len() as f64, height);
 }
