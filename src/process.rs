@@ -185,11 +185,11 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// Writes the bedrock that these heights make over the base, and books the change.
+    /// Writes the bedrock that these heights make over the base, and books what they changed since then: once or many
+    /// times over.
     pub fn put(&self, heights: &Field<f32>, world: &mut World, context: &Context) {
         let width = world.grid.width;
         let bedrock = world.layer_mut(Layer::Bedrock);
-        let before = sum_f64(&bedrock.data);
         crate::grid::map_cells(&mut bedrock.data, width, |x, y| {
             let old = self.base.at(x, y);
             let new = self.blend.of(old, heights.at(x, y));
@@ -198,12 +198,8 @@ impl Ground {
                 None => new,
             }
         });
-        let gained = (sum_f64(&bedrock.data) - before) * world.grid.cell_area_m2();
-        if gained >= 0.0 {
-            world.ledger.book_in(context.stage, Matter::Rock, gained);
-        } else {
-            world.ledger.book_out(context.stage, Matter::Rock, -gained);
-        }
+        let gained_m3 = (sum_f64(&bedrock.data) - sum_f64(&self.base.data)) * world.grid.cell_area_m2();
+        world.ledger.set(context.stage, Matter::Rock, gained_m3.max(0.0), (-gained_m3).max(0.0));
     }
 
     /// The fields to be saved with a stage.

@@ -128,6 +128,9 @@ pub(crate) struct RawFilm {
     pub file: PathBuf,
     #[command(flatten)]
     pub look: RawLook,
+    /// Replace the film that is there
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// `params` as typed.

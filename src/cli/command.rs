@@ -99,7 +99,7 @@ impl Command {
                 Command::Render(Picture { world, file, view: raw.view, overlay: raw.overlay })
             }
             RawCommand::Film(raw) => {
-                let film = film::request(Some(raw.file), &raw.look)?;
+                let film = film::request(Some(raw.file), &raw.look, raw.force)?;
                 Command::Film { world: raw.world, film }
             }
             RawCommand::App(raw) => Command::App(raw),

@@ -46,11 +46,12 @@ pub(crate) fn film(raw: &RawGrow) -> Result<Option<FilmRequest>, CliError> {
              before --video)"
         ));
     }
-    request(file.clone(), &raw.look).map(Some)
+    // A run that goes on, or begins anew, makes its film anew.
+    request(file.clone(), &raw.look, raw.force || raw.resume).map(Some)
 }
 
 /// A film of this name and look.
-pub(crate) fn request(file: Option<PathBuf>, look: &RawLook) -> Result<FilmRequest, CliError> {
+pub(crate) fn request(file: Option<PathBuf>, look: &RawLook, replace: bool) -> Result<FilmRequest, CliError> {
     let ffmpeg_args = look.ffmpeg_args.as_deref().unwrap_or_default();
     let Some(ffmpeg_args) = split_arguments(ffmpeg_args) else {
         return wrong(format!("--ffmpeg-args {ffmpeg_args}: a quote is not closed"));
@@ -62,6 +63,7 @@ pub(crate) fn request(file: Option<PathBuf>, look: &RawLook) -> Result<FilmReque
         view: look.view.clone().unwrap_or_else(|| "relief".to_owned()),
         clock: look.clock,
         ffmpeg_args,
+        replace,
     })
 }
 

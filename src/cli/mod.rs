@@ -102,7 +102,12 @@ fn parse_and_run(app: Option<OpenApp>) -> Result<(), CliError> {
     let cancel = Arc::new(AtomicBool::new(false));
     let asked = Arc::clone(&cancel);
     // Where no handler can be set, Ctrl-C still ends the program, only less tidily.
-    let _ = ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed));
+    let _ = ctrlc::set_handler(move || {
+        // Who asks twice does not want to wait, for another program either; the last checkpoint stands.
+        if asked.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    });
     match command {
         Command::Grow(grow) => grow::run(*grow, &cancel, &mut output),
         Command::Presets(name) => reference::presets(name.as_deref(), &mut output),

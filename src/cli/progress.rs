@@ -11,6 +11,9 @@ use super::{command::Voice, output::say};
 /// Ticks of a whole bar.
 const TICKS: u64 = 1000;
 
+/// What a person should know who meant to go on.
+const ANEW: &str = "note: there is no stopped run to go on with; a new one begins";
+
 fn resumed(time_yr: f64, filmed: bool) -> String {
     let film =
         if filmed { "; the film begins there (--keep-timeline keeps the whole run for 'upthrust film')" } else { "" };
@@ -53,6 +56,7 @@ impl Progress {
                     bar.set_position(*done as u64 * TICKS / (*of).max(1) as u64);
                     bar.set_message(format!("{done} of {of} worlds"));
                 }
+                Event::Anew => bar.println(ANEW),
                 Event::Resumed { time_yr, filmed } => bar.println(resumed(*time_yr, *filmed)),
                 Event::Writing(file) => bar.set_message(format!("writing {file}")),
             },
@@ -64,6 +68,7 @@ impl Progress {
                     let (stage, of) = (moment.stage + 1, moment.stages);
                     say(&format!("{stage}/{of} {}: {} {steps}, {seconds:.1} s", moment.label, moment.step));
                 }
+                Event::Anew => say(ANEW),
                 Event::Resumed { time_yr, filmed } => say(&resumed(*time_yr, *filmed)),
                 Event::World { done, of } if done == of => say(&format!("{of} worlds")),
                 _ => {}

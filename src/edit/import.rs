@@ -182,7 +182,8 @@ impl ImportParams {
     fn scale(&self, header: &Header, said: Option<&Sidecar>) -> Result<Scale, Problem> {
         let stated = header.metres && self.low_m.is_none() && self.high_m.is_none();
         if stated {
-            return Ok(Scale { black: 0.0, low_m: 0.0, per_value_m: 1.0, step_m: header.sample.step() });
+            let [low_m, per_value_m] = header.line.unwrap_or([0.0, 1.0]);
+            return Ok(Scale { black: 0.0, low_m, per_value_m, step_m: header.sample.step() * per_value_m.abs() });
         }
         let (black, white) = header.sample.ends();
         let said = said.filter(|_| !header.metres);
@@ -212,7 +213,7 @@ impl ImportParams {
         let levels = said.as_ref().filter(|_| !header.metres).and_then(|said| Some((said.black_m?, said.white_m?)));
         if let Some((black_m, white_m)) = levels.filter(|_| self.low_m.is_none() && self.high_m.is_none()) {
             remarks.push(format!(
-                "{0}: black is {black_m} m and white {white_m} m, as {0}.json beside it says (low_m, high_m)",
+                "{0}: black is {black_m:.1} m and white {white_m:.1} m, as {0}.json beside it says (low_m, high_m)",
                 self.path
             ));
         } else if !header.metres && self.low_m.is_none() && self.high_m.is_none() {

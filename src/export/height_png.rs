@@ -12,7 +12,7 @@ use super::{
     raster::{Lattice, Layout, Levels, Raster, Samples, png_image},
     write_whole,
 };
-use crate::world::World;
+use crate::{grid::Field, world::World};
 
 /// The heights that black and white stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -30,10 +30,7 @@ pub fn write_height_png(world: &World, path: &Path) -> Result<HeightRange, Expor
         let (x, y) = height.first_non_finite().unwrap_or_default();
         return Err(ExportError::NotFinite { layer: "height", x, y });
     };
-    write_levels(
-        &Raster { lattice: Lattice::cells(&world.grid), channels: 1, samples: Samples::U16(levels.to_u16(&height)) },
-        path,
-    )?;
+    write_levels(&height, levels, path)?;
     Ok(HeightRange { black_m: levels.black, white_m: levels.white })
 }
 
@@ -46,16 +43,15 @@ pub fn write_height_png_within(world: &World, range: HeightRange, path: &Path) -
     let (black, white) = (range.black_m as f32, range.white_m as f32);
     let cut = height.data.iter().filter(|&&h| h < black || h > white).count() as u64;
     let levels = Levels { black: range.black_m, white: range.white_m };
-    write_levels(
-        &Raster { lattice: Lattice::cells(&world.grid), channels: 1, samples: Samples::U16(levels.to_u16(&height)) },
-        path,
-    )?;
+    write_levels(&height, levels, path)?;
     Ok(cut)
 }
 
-fn write_levels(raster: &Raster, path: &Path) -> Result<(), ExportError> {
+fn write_levels(height: &Field<f32>, levels: Levels, path: &Path) -> Result<(), ExportError> {
+    let samples = Samples::U16(levels.to_u16(height));
+    let raster = Raster { lattice: Lattice::cells(&height.grid), channels: 1, samples, levels: Some(levels) };
     write_whole(path, |out| {
-        png_image::encode(raster, Layout::default(), out)
+        png_image::encode(&raster, Layout::default(), out)
             .map_err(|cause| ExportError::Encode { path: path.to_owned(), cause })
     })
 }
@@ -64,7 +60,7 @@ fn write_levels(raster: &Raster, path: &Path) -> Result<(), ExportError> {
 mod tests {
     use super::*;
     use crate::{
-        grid::{Edges, Field, Grid},
+        grid::{Edges, Grid},
         world::Layer,
     };
 

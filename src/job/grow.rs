@@ -20,7 +20,7 @@ use crate::{
 
 use super::{
     Event, Existing, HEIGHT, JobError, MANIFEST, Manifest, RELIEF, STORE,
-    film::{Film, FilmPlan, FilmRequest, FilmSink, FramesRequest, HeightFrames},
+    film::{Film, FilmPlan, FilmRequest, FilmSink, FramesRequest, HeightFrames, made},
     folder::{Partial, free, newest},
     keep::KeepSink,
     picture::write_png,
@@ -82,7 +82,8 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     let partial = Partial::begin(&out, request.existing)?;
     let mut frames =
         request.frames.as_ref().map(|frames| HeightFrames::begin(frames, plan, until, cancel)).transpose()?;
-    let film = film.map(|film| Film::new(&film.within(&partial.path()), plan.world.grid())).transpose()?;
+    let film = film.map(|film| Film::new(&film.within(&partial.path()), plan.world.grid())).transpose();
+    let film = film.map_err(|failure| failure.moved(&partial.path(), &out))?;
     let mut film = film.map(FilmSink::new);
     let started = Instant::now();
     let mut checkpoints = Checkpoints::new(&partial.checkpoints(), plan, request.checkpoint_every);
@@ -92,10 +93,12 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
             film.begin_at(checkpoint);
         }
         tell(Event::Resumed { time_yr: checkpoint.time_yr(), filmed: film.is_some() });
+    } else if request.existing == Existing::Resume {
+        tell(Event::Anew);
     }
     let place = from.as_ref().map(Checkpoint::place);
-    let keep = |layers: &Vec<Layer>| KeepSink::begin(&partial.timeline(), plan.world.grid(), layers, place);
-    let mut keep = request.keep.as_ref().map(keep).transpose()?;
+    let keep = |layers| KeepSink::begin(&partial.timeline(), plan.world.grid(), layers, place);
+    let mut keep = kept_layers(request, until)?.as_deref().map(keep).transpose()?;
     let mut series = SeriesSink::begin(partial.beside(), place)?;
     let mut profiles = ProfileSink::begin(partial.beside(), place, keep.is_some())?;
     let mut sinks: Vec<&mut dyn Sink> = vec![&mut series, &mut profiles];
@@ -113,7 +116,7 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
         match end {
             // What was made within the folder moves with it.
             Ok(made) => films.push(made.strip_prefix(partial.path()).map(|inner| out.join(inner)).unwrap_or(made)),
-            Err(failure) => failures.push(failure),
+            Err(failure) => failures.push(failure.moved(&partial.path(), &out)),
         }
     }
     let height_png = write(plan, &world, &partial.path(), cancel, tell).map_err(stopped)?;
@@ -126,6 +129,16 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     manifest.seconds = started.elapsed().as_secs_f64();
     manifest.write(&partial.path())?;
     Ok(Grown { folder: partial.finish()?, manifest: manifest.text(), films, failures })
+}
+
+/// The layers of the timeline, where one is kept: also those by which the land is coloured, for films of it.
+fn kept_layers(request: &Request, until: Option<usize>) -> Result<Option<Vec<Layer>>, JobError> {
+    let Some(mut layers) = request.keep.clone() else { return Ok(None) };
+    let made = made(&request.plan, until)?;
+    if relief::CLIMATE.iter().all(|layer| made.contains(layer)) {
+        layers.extend(relief::CLIMATE.iter().filter(|layer| !request.keep.iter().flatten().any(|kept| kept == *layer)));
+    }
+    Ok(Some(layers))
 }
 
 /// The finished world at `out`; an error if it is of another recipe.

@@ -25,7 +25,7 @@ pub use report::Measured;
 pub use series::{PROFILES, SERIES};
 pub use sheet::{MOST as SHEET_MOST, SheetRequest, sheet};
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::{
     export::ExportError,
@@ -49,6 +49,8 @@ pub const MANIFEST: &str = "manifest.json";
 pub enum Event<'a> {
     /// A step is done.
     Step(&'a Moment<'a>),
+    /// There was no stopped run to go on with.
+    Anew,
     /// A stopped run goes on.
     Resumed {
         /// The world's clock, years.
@@ -102,6 +104,17 @@ pub enum JobError {
 }
 
 impl JobError {
+    /// The same of a film that was made in one folder and would have been in another.
+    pub(crate) fn moved(self, from: &Path, to: &Path) -> Self {
+        match self {
+            JobError::Export(ExportError::Film { path, cause }) => {
+                let path = path.strip_prefix(from).map(|inner| to.join(inner)).unwrap_or(path);
+                JobError::Export(ExportError::Film { path, cause })
+            }
+            other => other,
+        }
+    }
+
     /// Whether the user stopped it.
     pub fn cancelled(&self) -> bool {
         matches!(self, JobError::Timeline(TimelineError::Cancelled) | JobError::Stopped)

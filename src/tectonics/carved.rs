@@ -301,19 +301,11 @@ fn unread(under: &[u32], domain: &Domain, warp: &Warp) -> Vec<(usize, DVec2)> {
     for &cell in under.iter().filter(|&&cell| cell != OUTSIDE) {
         read[cell as usize] = true;
     }
-    let read = &read;
-    let shown = |y: usize| {
-        // How far the last cell of the row was moved: the next one is not moved very differently.
-        let mut by_m = DVec2::ZERO;
-        let unread = (0..domain.cells).map(move |x| (x, y * domain.cells + x)).filter(|&(_, cell)| !read[cell]);
-        unread.filter_map(move |(x, cell)| {
-            let here = domain.cell_center_m(x, y);
-            let at_m = warp.shown_near(here, here + by_m);
-            by_m = at_m - here;
-            domain.on_map(at_m).then_some((cell, at_m))
-        })
+    let shown = |cell: usize| {
+        let at_m = warp.shown_at(domain.cell_center_m(cell % domain.cells, cell / domain.cells));
+        domain.on_map(at_m).then_some((cell, at_m))
     };
-    (0..domain.cells).into_par_iter().flat_map_iter(shown).collect()
+    (0..read.len()).into_par_iter().filter(|&cell| !read[cell]).filter_map(shown).collect()
 }
 
 fn poses(run: &Simulation) -> Vec<Pose> {

@@ -82,7 +82,7 @@ struct Geologic {
     bodies: Vec<Vec<DVec2>>,
     /// The map that others carve, where there are any.
     carved: Option<(Carved, Plains)>,
-    /// The sea level of its next step, where a share of it is to be land, m.
+    /// The sea level that its last step ended with, where a share of it is to be land, m.
     level_m: Option<f64>,
 }
 
@@ -397,7 +397,6 @@ impl Geologic {
             book_rock(world, context, before);
         }
         self.carved = Some((carved, plains));
-        self.find_level(params);
     }
 
     /// Finds the sea level on the ground as the plates left it, where a share of the map is to be land.

@@ -98,12 +98,7 @@ impl Warp {
 
     /// The map point that reads a point of the plates; Newton's method, good to a metre.
     pub fn shown_at(&self, q_m: DVec2) -> DVec2 {
-        self.shown_near(q_m, q_m)
-    }
-
-    /// The same, looked for from `near_m`.
-    pub fn shown_near(&self, q_m: DVec2, near_m: DVec2) -> DVec2 {
-        let mut p = near_m;
+        let mut p = q_m;
         for _ in 0..30 {
             let (at, rows) = self.read_with_jacobian(p);
             let error = q_m - at;
@@ -136,8 +131,6 @@ mod tests {
             }
             let p = map * 0.4;
             assert!((warp.shown_at(warp.read_at(p)) - p).length() < 20.0);
-            let near = p + map * 0.03;
-            assert!((warp.shown_near(warp.read_at(p), near) - p).length() < 20.0);
         }
     }
 

@@ -282,6 +282,8 @@ fn what_cannot_be_filmed_is_refused_in_one_line() {
     refused(&["--video", "a.avi"], &format!("a.avi: {ends}"));
     refused(&["--video", "no/a.png"], "no/a.png: there is no folder 'no'");
     refused(&["--video", "a.exr"], "a.exr: one EXR holds one picture; number them, as in film/%05d.exr");
+    place.write("old.png", "an old film");
+    refused(&["--video", "old.png"], "old.png: exists; choose another name, or replace it with --force");
     refused(&["--video", "%d.png"], "%d.png: name a folder for the pictures too, as in film/%05d.png");
     refused(
         &["--video", "a.png", "--fps", "0"],

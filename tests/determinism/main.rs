@@ -8,18 +8,17 @@ use std::sync::atomic::AtomicBool;
 
 use upthrust::{
     recipe::{Overrides, Plan, Source},
-    timeline::Timeline,
+    timeline::{Sink, Timeline},
     world::World,
 };
 
 /// A preset grown at a size, with a seed of its own if one is given.
 fn grown(preset: &str, size: &str, seed: Option<u64>) -> World {
-    let plan = plan(preset, size, seed);
-    let stay = AtomicBool::new(false);
-    Timeline::new(&plan, &stay).run(&mut [], &mut |_| ()).unwrap()
+    let overrides = Overrides { size: Some(size.to_owned()), seed, ..Overrides::default() };
+    run(&Plan::new(&Source::find(preset).unwrap(), &overrides).unwrap(), &mut [])
 }
 
-fn plan(preset: &str, size: &str, seed: Option<u64>) -> Plan {
-    let overrides = Overrides { size: Some(size.to_owned()), seed, ..Overrides::default() };
-    Plan::new(&Source::find(preset).unwrap(), &overrides).unwrap()
+fn run(plan: &Plan, sinks: &mut [&mut dyn Sink]) -> World {
+    let stay = AtomicBool::new(false);
+    Timeline::new(plan, &stay).run(sinks, &mut |_| ()).unwrap()
 }

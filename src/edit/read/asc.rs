@@ -140,7 +140,15 @@ impl<'a> Text<'a> {
             (None, None) => None,
             _ => return Err(damaged("its cellsize is no length")),
         };
-        let header = Header { format: Format::Asc, width, height, cell_m, sample: Sample::Fraction(32), metres: true };
+        let header = Header {
+            format: Format::Asc,
+            width,
+            height,
+            cell_m,
+            sample: Sample::Fraction(32),
+            metres: true,
+            line: None,
+        };
         Ok(Table { header, no_data, first })
     }
 }

@@ -40,7 +40,15 @@ pub(super) fn header(input: &mut dyn Input, length: u64) -> Result<Header, Probl
     pick(part)?;
     let (width, height) = (part.layer_size.0 as u64, part.layer_size.1 as u64);
     let (width, height) = checked(width, height, 2, length, EXPANSION)?;
-    Ok(Header { format: Format::Exr, width, height, cell_m: None, sample: Sample::Fraction(32), metres: true })
+    Ok(Header {
+        format: Format::Exr,
+        width,
+        height,
+        cell_m: None,
+        sample: Sample::Fraction(32),
+        metres: true,
+        line: None,
+    })
 }
 
 fn pick(part: &Part) -> Result<Pick, Problem> {

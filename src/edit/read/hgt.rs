@@ -24,7 +24,7 @@ pub(super) fn header(name: &str, length: u64) -> Result<Header, Problem> {
     let east_m = DEGREE_M * libm::cos(middle_deg.to_radians()) / (size[0] - 1) as f64;
     let north_m = DEGREE_M / (size[1] - 1) as f64;
     let sample = Sample::Signed(16);
-    Ok(Header { format: Format::Hgt, width, height, cell_m: Some([east_m, north_m]), sample, metres: true })
+    Ok(Header { format: Format::Hgt, width, height, cell_m: Some([east_m, north_m]), sample, metres: true, line: None })
 }
 
 /// The latitude that a tile is named by.

@@ -45,6 +45,8 @@ pub struct Header {
     pub sample: Sample,
     /// Whether values are metres, not levels between black and white.
     pub metres: bool,
+    /// Where a file of metres says so: the height of 0, m, and the metres a value.
+    pub line: Option<[f64; 2]>,
 }
 
 /// How a value is stored.

@@ -17,7 +17,15 @@ pub(super) fn header(input: &mut dyn Input, length: u64) -> Result<Header, Probl
     // The fewest bits a pixel has, for pictures of 1 to 4 bits; a row is whole bytes.
     let (width, height) = checked(width, height, 1, length, EXPANSION * 8)?;
     let bits = if info.bit_depth as u8 == 16 { 16 } else { 8 };
-    Ok(Header { format: Format::Png, width, height, cell_m: None, sample: Sample::Whole(bits), metres: false })
+    Ok(Header {
+        format: Format::Png,
+        width,
+        height,
+        cell_m: None,
+        sample: Sample::Whole(bits),
+        metres: false,
+        line: None,
+    })
 }
 
 pub(super) fn heights(input: &mut dyn Input, header: &Header, scale: &Scale) -> Result<Vec<f32>, Problem> {

@@ -24,7 +24,7 @@ pub(super) fn header(format: Format, length: u64, size: Option<[u32; 2]>) -> Res
         }));
     }
     let (width, height) = checked(width, height, bytes, length, 1)?;
-    Ok(Header { format, width, height, cell_m: None, sample, metres: format == Format::Raw32 })
+    Ok(Header { format, width, height, cell_m: None, sample, metres: format == Format::Raw32, line: None })
 }
 
 pub(super) fn heights(

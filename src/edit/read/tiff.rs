@@ -6,7 +6,7 @@
 use std::io::SeekFrom;
 
 use ::tiff::{
-    ColorType, TiffError,
+    ColorType, TiffError, TiffUnsupportedError,
     decoder::{Decoder, DecodingResult, Limits},
     tags::{SampleFormat, Tag},
 };
@@ -25,6 +25,9 @@ const PICTURE_BYTES: u64 = MOST_SIDE * MOST_SIDE * 4;
 /// What stands for no height where a file does not declare it: no land is that deep, or exactly that deep in fractions.
 const VOIDS: [f64; 3] = [-32768.0, -32767.0, -9999.0];
 
+/// GDAL's own tag: items of metadata as XML.
+const GDAL_METADATA: Tag = Tag::Unknown(42112);
+
 // Keys of GeoTIFF's directory (OGC 19-008), and the codes used here.
 const MODEL_TYPE: u16 = 1024;
 const GEOGRAPHIC: u16 = 2;
@@ -42,8 +45,9 @@ pub(super) fn header(input: &mut dyn Input, length: u64) -> Result<Header, Probl
     let (width, height) = checked(width as u64, height as u64, bytes, length, EXPANSION)?;
     let cell_m = cell_m(&mut tiff, height)?;
     let georeferenced = cell_m.is_some() || tiff.find_tag(Tag::GeoKeyDirectoryTag).map_err(problem)?.is_some();
-    let metres = georeferenced || !matches!(sample, Sample::Whole(_));
-    Ok(Header { format: Format::Tiff, width, height, cell_m, sample, metres })
+    let line = line(&mut tiff)?;
+    let metres = georeferenced || line.is_some() || !matches!(sample, Sample::Whole(_));
+    Ok(Header { format: Format::Tiff, width, height, cell_m, sample, metres, line })
 }
 
 pub(super) fn heights(input: &mut dyn Input, header: &Header, scale: &Scale) -> Result<Vec<f32>, Problem> {
@@ -116,7 +120,9 @@ fn open(input: &mut dyn Input) -> Result<Tiff<'_>, Problem> {
 }
 
 fn unsupported(what: &str) -> Problem {
-    Problem::Unsupported(format!("a TIFF of {what} is not read; save it as gray, 16-bit or 32-bit float"))
+    Problem::Unsupported(format!(
+        "a TIFF of {what} is not read; save it as gray, 16-bit or 32-bit float, uncompressed or with deflate or LZW"
+    ))
 }
 
 /// Channels a pixel, and whether the last says how opaque it is.
@@ -156,6 +162,21 @@ fn no_data(tiff: &mut Tiff) -> Result<Option<f64>, Problem> {
     Ok(text.trim_matches(['\0', ' ', '\n']).parse().ok())
 }
 
+/// GDAL's offset and scale of the first band, where they are stated.
+fn line(tiff: &mut Tiff) -> Result<Option<[f64; 2]>, Problem> {
+    let Some(value) = tiff.find_tag(GDAL_METADATA).map_err(problem)? else { return Ok(None) };
+    let text = value.into_string().map_err(problem)?;
+    let number = |role: &str| {
+        let items = text.split("<Item").filter_map(|item| item.split_once("</Item>")?.0.split_once('>'));
+        let (quoted, first) =
+            (format!("role=\"{role}\""), |head: &str| !head.contains("sample=") || head.contains("sample=\"0\""));
+        let mut own = items.filter(|(head, _)| head.contains(&quoted) && first(head));
+        own.find_map(|(_, text)| text.trim().parse::<f64>().ok()).filter(|v| v.is_finite())
+    };
+    let (offset, scale) = (number("offset"), number("scale").filter(|scale| *scale != 0.0));
+    Ok((offset.is_some() || scale.is_some()).then(|| [offset.unwrap_or(0.0), scale.unwrap_or(1.0)]))
+}
+
 /// A cell's size by GeoTIFF's tags; degrees become metres in the middle of the map.
 fn cell_m(tiff: &mut Tiff, height: usize) -> Result<Option<[f64; 2]>, Problem> {
     let mut numbers = |tag: Tag| -> Result<Vec<f64>, Problem> {
@@ -191,7 +212,12 @@ fn cell_m(tiff: &mut Tiff, height: usize) -> Result<Option<[f64; 2]>, Problem> {
 fn problem(error: TiffError) -> Problem {
     match error {
         TiffError::IoError(error) => io_problem(error),
-        TiffError::UnsupportedError(what) => unsupported(&what.to_string()),
+        TiffError::UnsupportedError(TiffUnsupportedError::UnsupportedCompressionMethod(method)) => {
+            unsupported(&format!("compression {method:?}"))
+        }
+        TiffError::UnsupportedError(what) => {
+            Problem::Unsupported(format!("{what}; save it as gray, 16-bit or 32-bit float"))
+        }
         TiffError::LimitsExceeded => damaged("it asks for more memory than a picture needs"),
         error => damaged(error),
     }

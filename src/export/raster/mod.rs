@@ -71,6 +71,8 @@ pub struct Raster {
     pub channels: usize,
     /// The samples.
     pub samples: Samples,
+    /// What black and white stand for, where whole numbers measure one quantity.
+    pub levels: Option<Levels>,
 }
 
 impl Raster {
@@ -86,7 +88,12 @@ impl Raster {
             Samples::U16(all) => Samples::U16(cut(all, row, from, count, rows)),
             Samples::F32(all) => Samples::F32(cut(all, row, from, count, rows)),
         };
-        Raster { lattice: self.lattice.part(x, y, width, height), channels: self.channels, samples }
+        Raster {
+            lattice: self.lattice.part(x, y, width, height),
+            channels: self.channels,
+            samples,
+            levels: self.levels,
+        }
     }
 }
 

@@ -15,7 +15,7 @@ fn heights() -> Field<f32> {
 }
 
 fn raster(samples: Samples) -> Raster {
-    Raster { lattice: Lattice::cells(&heights().grid), channels: 1, samples }
+    Raster { lattice: Lattice::cells(&heights().grid), channels: 1, samples, levels: None }
 }
 
 fn floats() -> Raster {
@@ -24,7 +24,7 @@ fn floats() -> Raster {
 
 fn numbers() -> (Raster, Levels) {
     let levels = Levels::of(&heights()).unwrap();
-    (raster(Samples::U16(levels.to_u16(&heights()))), levels)
+    (Raster { levels: Some(levels), ..raster(Samples::U16(levels.to_u16(&heights()))) }, levels)
 }
 
 fn written(name: &str, raster: &Raster, layout: Layout) -> (tempfile::TempDir, std::path::PathBuf) {

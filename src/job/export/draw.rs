@@ -44,7 +44,7 @@ impl Drawing {
         let weighing = order.weights() != WeightFiles::None || order.content == Content::Weights;
         let weigher = if weighing { Some(Weigher::of(world)?) } else { None };
         let mut drawing = Self {
-            asked: Raster { lattice, channels: 1, samples: Samples::U8(Vec::new()) },
+            asked: Raster { lattice, channels: 1, samples: Samples::U8(Vec::new()), levels: None },
             levels: None,
             outside: 0.0,
             green: None,
@@ -94,6 +94,7 @@ impl Drawing {
         self.levels = levels;
         let Some(levels) = levels else { return Ok(()) };
         self.outside = levels.outside(&values);
+        self.asked.levels = Some(levels);
         self.asked.samples = match order.depth {
             Depth::U8 => Samples::U8(levels.to_u8(&values)),
             _ => Samples::U16(levels.to_u16(&values)),
@@ -130,7 +131,7 @@ impl Drawing {
 fn channel(raster: &Raster, i: usize) -> Raster {
     let Samples::U8(all) = &raster.samples else { return raster.clone() };
     let one = all.iter().skip(i).step_by(raster.channels).copied().collect();
-    Raster { lattice: raster.lattice, channels: 1, samples: Samples::U8(one) }
+    Raster { lattice: raster.lattice, channels: 1, samples: Samples::U8(one), levels: None }
 }
 
 fn finite(world: &World, layer: Layer) -> Result<Field<f32>, JobError> {
@@ -157,6 +158,6 @@ impl Weigher {
     fn raster(&self, lattice: Lattice, sea_level_m: f64) -> Raster {
         let (height, slope) = (lattice.read(&self.height), lattice.read(&self.slope));
         let samples = Samples::U8(self.rules.weights(&height, &slope, sea_level_m));
-        Raster { lattice, channels: MATERIALS.len(), samples }
+        Raster { lattice, channels: MATERIALS.len(), samples, levels: None }
     }
 }

@@ -17,6 +17,7 @@ mod sink;
 pub(crate) use heights::HeightFrames;
 pub use heights::{FramesRequest, HEIGHTS_RANGE};
 pub use replay::replay;
+pub(crate) use request::made;
 pub use request::{FilmPlan, FilmRequest};
 pub(crate) use sink::FilmSink;
 

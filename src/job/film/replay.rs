@@ -32,7 +32,7 @@ pub fn replay(
     };
     let planned = plan(request, &recording, &world, &provenance)?;
     let mut film = Film::new(&planned, recording.first_grid().unwrap_or(world.grid))?;
-    let stages = planned.clips.len();
+    let (stages, last) = (planned.clips.len(), recording.frames().len() - 1);
     for (i, frame) in recording.frames().iter().enumerate() {
         if cancel.load(Ordering::Relaxed) {
             return Err(TimelineError::Cancelled.into());
@@ -41,7 +41,9 @@ pub fn replay(
         let moment =
             Moment { stage: frame.stage, stages, label, step: frame.step, done: frame.done, time_yr: frame.time_yr };
         if film.wants(&moment) > Interest::None {
-            film.frame(&recording.world(i)?, &moment)?;
+            // The last frame is the finished world, of which the store has more.
+            let kept = if i == last { None } else { Some(recording.world(i)?) };
+            film.frame(kept.as_ref().unwrap_or(&world), &moment)?;
         }
         tell(Event::Step(&moment));
     }

@@ -39,6 +39,8 @@ pub struct FilmRequest {
     pub clock: bool,
     /// What ffmpeg is told besides.
     pub ffmpeg_args: Vec<String>,
+    /// Whether it takes the place of a film that is there.
+    pub replace: bool,
 }
 
 /// A film that can be made.
@@ -87,7 +89,7 @@ impl FilmPlan {
         let rate = request.rate.unwrap_or(format.usual_rate());
         format.check(rate, request.size.unwrap_or(size))?;
         if request.file.is_some() {
-            check_place(&file, format)?;
+            check_place(&file, format, request.replace)?;
         }
         let view = picture::view(&request.view)?;
         let ffmpeg_args = request.ffmpeg_args.clone();
@@ -113,9 +115,13 @@ impl FilmPlan {
 }
 
 /// Refuses early what could not be written at the end.
-fn check_place(file: &Path, format: Format) -> Result<(), JobError> {
+fn check_place(file: &Path, format: Format, replace: bool) -> Result<(), JobError> {
     if !format.numbered() {
         picture::check_place(file)?;
+        if !replace && file.exists() {
+            let shown = file.display();
+            return Err(JobError::Refused(format!("{shown}: exists; choose another name, or replace it with --force")));
+        }
     }
     if format.needs_ffmpeg() && !Encoder::has_ffmpeg() {
         return Err(JobError::Refused(format!(
@@ -128,7 +134,7 @@ fn check_place(file: &Path, format: Format) -> Result<(), JobError> {
 }
 
 /// The layers that the stages make.
-fn made(plan: &Plan, until: Option<usize>) -> Result<Vec<Layer>, JobError> {
+pub(crate) fn made(plan: &Plan, until: Option<usize>) -> Result<Vec<Layer>, JobError> {
     let mut made: Vec<Layer> = Vec::new();
     for (_, stage) in plan.running().filter(|(i, _)| until.is_none_or(|end| *i <= end)) {
         let process = stage.build().map_err(|e| JobError::Refused(e.to_string()))?;

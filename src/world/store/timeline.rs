@@ -332,6 +332,8 @@ impl Recording {
             match layer {
                 Layer::Height => world.set_layer(Layer::Bedrock, field),
                 layer if layer.derived() => {}
+                // Nothing but zeros: no process had made it yet.
+                _ if field.data.iter().all(|&v| v == 0.0) => {}
                 layer => world.set_layer(layer, field),
             }
         }
