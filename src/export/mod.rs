@@ -36,11 +36,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use crate::world::store::said;
+
 /// Why a file could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// The disk refused.
-    #[error("{path}: {cause}")]
+    #[error("{path}: {}", said(.cause))]
     Disk {
         /// The file.
         path: PathBuf,
@@ -48,7 +50,7 @@ pub enum ExportError {
         cause: io::Error,
     },
     /// What is written to took no more.
-    #[error("cannot write: {0}")]
+    #[error("cannot write: {}", said(.0))]
     Stream(#[from] io::Error),
     /// The file could not be encoded.
     #[error("{path}: cannot write this file: {cause}")]

@@ -16,6 +16,7 @@ use std::{
 };
 
 use super::{JobError, MANIFEST};
+use crate::world::store::said;
 
 /// What is to happen where something is already.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,7 +63,7 @@ impl Partial {
         let mut partial = Self { target: target.to_owned(), beside, made_parents: Vec::new(), lock: None };
         partial.make().map_err(|cause| match cause.kind() {
             io::ErrorKind::WouldBlock => JobError::Refused(format!("{shown}: another run is growing this world")),
-            _ => JobError::Refused(format!("{shown}: cannot make this folder: {}", plain(&cause))),
+            _ => JobError::Refused(format!("{shown}: cannot make this folder: {}", said(&cause))),
         })?;
         if existing == Existing::Refuse && partial.has_checkpoint() {
             return refused(format!(
@@ -226,12 +227,6 @@ fn numbered(stem: &Path) -> impl Iterator<Item = PathBuf> {
 /// Whether a world stands there, or a stopped run is kept for it.
 fn taken(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok() || beside(path).is_some_and(|beside| has_checkpoint(&beside))
-}
-
-/// A system's error without its number.
-pub(crate) fn plain(error: &io::Error) -> String {
-    let text = error.to_string();
-    text.split(" (os error").next().unwrap_or(&text).to_lowercase()
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ use crate::{
     recipe::RecipeError,
     relief::ReliefError,
     timeline::{CheckpointError, Moment, TimelineError},
-    world::store::StoreError,
+    world::store::{StoreError, said},
 };
 
 /// The store's name in a world's folder.
@@ -94,7 +94,7 @@ pub enum JobError {
     #[error(transparent)]
     Relief(#[from] ReliefError),
     /// A file could not be written.
-    #[error("{path}: {cause}")]
+    #[error("{path}: {}", said(.cause))]
     Disk {
         /// The file.
         path: PathBuf,

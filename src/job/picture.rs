@@ -13,11 +13,11 @@ use crate::{
     relief,
     world::{
         Layer, World,
-        store::{self, Provenance},
+        store::{self, Provenance, said},
     },
 };
 
-use super::{JobError, STORE, folder::plain};
+use super::{JobError, STORE};
 
 /// Fine lines and letters stay clean.
 const JPEG_QUALITY: u8 = 92;
@@ -123,7 +123,7 @@ pub(crate) fn check_place(file: &Path) -> Result<(), JobError> {
     match file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         Some(folder) if !folder.is_dir() => refuse(format!("there is no folder '{}'", folder.display())),
         _ => match std::fs::OpenOptions::new().append(true).open(file) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => refuse(format!("cannot be written: {}", plain(&e))),
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => refuse(format!("cannot be written: {}", said(&e))),
             _ => Ok(()),
         },
     }

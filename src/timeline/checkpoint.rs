@@ -26,14 +26,14 @@ use crate::{
     recipe::Plan,
     world::{
         World,
-        store::{self, Provenance, StoreError},
+        store::{self, Provenance, StoreError, said},
     },
 };
 
 use super::StageRecord;
 
 /// Raised when older builds cannot read a checkpoint any more.
-const FORMAT: u64 = 1;
+const FORMAT: u64 = 2;
 /// Checkpoints kept: should the newest not be readable, the one before it is.
 const KEPT: usize = 2;
 /// A run spends at most a twentieth of its time on checkpoints.
@@ -45,7 +45,7 @@ pub const EVERY: Duration = Duration::from_secs(45);
 #[derive(Debug, thiserror::Error)]
 pub enum CheckpointError {
     /// The disk refused.
-    #[error("{path}: cannot keep a checkpoint: {cause}")]
+    #[error("{path}: cannot keep a checkpoint: {}; what was kept before stands, for --resume", said(.cause))]
     Disk {
         /// The file or folder.
         path: PathBuf,

@@ -103,7 +103,7 @@ fn output_folders() {
     grow(&["--out", "file/world"], "file/world: cannot make this folder: not a directory");
     grow(&["--out", ".."], "--out '..': name a new folder");
     #[cfg(target_os = "linux")]
-    grow(&["--out", "/proc/world"], "/proc/world: cannot make this folder: no such file or directory");
+    grow(&["--out", "/proc/world"], "/proc/world: cannot make this folder: no such file or directory; check the path");
 }
 
 #[test]

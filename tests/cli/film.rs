@@ -278,7 +278,7 @@ fn what_cannot_be_filmed_is_refused_in_one_line() {
         assert_eq!((said.err.trim_end(), said.code), (format!("error: {line}").as_str(), 2), "{rest:?}");
         assert_eq!(place.files(), before, "{rest:?} left something behind");
     };
-    let ends = "a film's name ends in .mp4, .webm, .mpg, .mov, .gif or .png, or is numbered, as in film/%05d.png";
+    let ends = "a film's name ends in .mp4, .webm, .mpg, .mov, .gif or .png, or is numbered, as in film/%05d.png or film/%05d.exr";
     refused(&["--video", "a.avi"], &format!("a.avi: {ends}"));
     refused(&["--video", "no/a.png"], "no/a.png: there is no folder 'no'");
     refused(&["--video", "a.exr"], "a.exr: one EXR holds one picture; number them, as in film/%05d.exr");

@@ -239,7 +239,21 @@ fn output(settings: &Settings) -> Vec<OsString> {
         Format::Mpeg => (yuv420, &["-c:v", "mpeg2video", "-q:v", "3", "-f", "mpeg"]),
         Format::Mov => (
             "scale=out_color_matrix=bt709:out_range=tv,format=yuv422p10le",
-            &["-c:v", "prores_ks", "-profile:v", "3", "-vendor", "apl0", "-f", "mov"],
+            &[
+                "-c:v",
+                "prores_ks",
+                "-profile:v",
+                "3",
+                "-vendor",
+                "apl0",
+                // The encoder does not state the colours by itself.
+                "-bsf:v",
+                "prores_metadata=color_primaries=bt709:color_trc=bt709:colorspace=bt709",
+                "-movflags",
+                "+faststart",
+                "-f",
+                "mov",
+            ],
         ),
         // Lossless and quick, until the colours are chosen.
         _ => return ["-c:v", "ffv1", "-pix_fmt", "bgr0", "-f", "nut"].map(OsString::from).to_vec(),

@@ -56,7 +56,7 @@ impl Format {
             "exr" => refuse(path, "one EXR holds one picture; number them, as in film/%05d.exr"),
             _ => refuse(
                 path,
-                "a film's name ends in .mp4, .webm, .mpg, .mov, .gif or .png, or is numbered, as in film/%05d.png",
+                "a film's name ends in .mp4, .webm, .mpg, .mov, .gif or .png, or is numbered, as in film/%05d.png or film/%05d.exr",
             ),
         }
     }

@@ -10,7 +10,7 @@ use exr::prelude::{Encoding, Image, SpecificChannels, WritableImage, f16};
 use image::{ExtendedColorType, ImageEncoder, codecs::png};
 
 use super::{Format, Settings};
-use crate::export::ExportError;
+use crate::{export::ExportError, world::store::said};
 
 /// A folder being filled beside its place. Dropped before [`NumberedFolder::finish`], it leaves nothing behind.
 pub struct NumberedFolder {
@@ -34,9 +34,7 @@ impl NumberedFolder {
         crate::export::sweep(folder);
         let beside = folder.with_file_name(format!(".{}.partial-{}", name.to_string_lossy(), std::process::id()));
         if let Err(cause) = fs::create_dir(&beside) {
-            let why = cause.to_string();
-            let why = why.split(" (os error").next().unwrap_or(&why).to_lowercase();
-            return refuse(&format!("cannot make this folder: {why}"));
+            return refuse(&format!("cannot make this folder: {}", said(&cause)));
         }
         Ok(Self { folder: folder.to_owned(), beside, finished: false })
     }

@@ -17,10 +17,12 @@
 //! This file and its children alone name zarrs. They know no process.
 
 mod read;
+mod said;
 mod timeline;
 mod write;
 
 pub use read::read;
+pub use said::said;
 pub use timeline::{Frame, Recorder, Recording};
 pub use write::write;
 
@@ -62,7 +64,7 @@ pub enum StoreError {
         y: usize,
     },
     /// The disk refused.
-    #[error("{path}: {cause}")]
+    #[error("{path}: {}", said(.cause))]
     Disk {
         /// The file or folder.
         path: PathBuf,
@@ -92,7 +94,7 @@ pub enum StoreError {
         version: String,
     },
     /// The store is damaged.
-    #[error("{path}: the world is damaged: {cause}")]
+    #[error("{path}: the world is damaged: {cause}; grow it again")]
     Damaged {
         /// The store.
         path: PathBuf,
