@@ -257,11 +257,11 @@ impl Run {
             }
             self.advance();
         }
-        if let Run::Geologic(run) = self {
-            if let (Some((carved, _)), Some(Shared { expected, worn })) = (&mut run.carved, &resume.shared) {
-                carved.restore(&run.simulation, params, expected.clone(), worn.clone());
-                run.find_level(params);
-            }
+        if let Run::Geologic(run) = self
+            && let (Some((carved, _)), Some(Shared { expected, worn })) = (&mut run.carved, &resume.shared)
+        {
+            carved.restore(&run.simulation, params, expected.clone(), worn.clone());
+            run.find_level(params);
         }
         Ok(())
     }
