@@ -59,8 +59,8 @@ with rasterio.open(folder / "h16.tif") as tif:
     assert tif.dtypes == ("uint16",)
     np.testing.assert_array_equal(tif.read(1), opened)
     # GDAL's scale and offset make metres of the numbers.
-    metres = tif.read(1) * tif.scales[0] + tif.offsets[0]
-    assert abs(metres - heights).max() <= 0.5001 * tif.scales[0] + 1e-3, (tif.scales, tif.offsets)
+    scaled = tif.read(1) * tif.scales[0] + tif.offsets[0]
+    assert np.abs(scaled - heights).max() <= 0.5001 * tif.scales[0] + 1e-3, (tif.scales, tif.offsets)
 np.testing.assert_array_equal(np.fromfile(folder / "h.r16", "<u2").reshape(height, width), opened)
 np.testing.assert_array_equal(np.fromfile(folder / "south.raw", ">u2").reshape(height, width)[::-1], opened)
 

@@ -136,7 +136,8 @@ fn check_place(file: &Path, format: Format, replace: bool) -> Result<(), JobErro
 /// The layers that the stages make.
 pub(crate) fn made(plan: &Plan, until: Option<usize>) -> Result<Vec<Layer>, JobError> {
     let mut made: Vec<Layer> = Vec::new();
-    for (_, stage) in plan.running().filter(|(i, _)| until.is_none_or(|end| *i <= end)) {
+    let running = plan.running().filter(|(i, _)| until.is_none_or(|end| *i <= end));
+    for stage in running.flat_map(|(_, stage)| std::iter::once(stage).chain(&stage.coupled)) {
         let process = stage.build().map_err(|e| JobError::Refused(e.to_string()))?;
         made.extend(process.writes());
     }
@@ -173,4 +174,18 @@ pub(super) fn range_of(world: &World) -> [f64; 2] {
     let (low, high) = world.height().range().map_or((0.0, 1.0), |(low, high)| (f64::from(low), f64::from(high)));
     let margin = MARGIN * (high - low).max(1.0);
     [low - margin - world.sea_level_m, high + margin - world.sea_level_m]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::{Overrides, find_preset};
+
+    #[test]
+    fn stages_that_step_in_turn_make_their_layers_too() {
+        let plan = Plan::new(&find_preset("collision").unwrap().source(), &Overrides::default()).unwrap();
+        let made = made(&plan, None).unwrap();
+        assert!(CLIMATE.iter().chain(&[Layer::PlateId, Layer::Wear]).all(|layer| made.contains(layer)), "{made:?}");
+        assert!(!made.contains(&Layer::Lava));
+    }
 }
