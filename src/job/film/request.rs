@@ -186,6 +186,6 @@ mod tests {
         let plan = Plan::new(&find_preset("collision").unwrap().source(), &Overrides::default()).unwrap();
         let made = made(&plan, None).unwrap();
         assert!(CLIMATE.iter().chain(&[Layer::PlateId, Layer::Wear]).all(|layer| made.contains(layer)), "{made:?}");
-        assert!(!made.contains(&Layer::Lava));
+        assert!(!made.contains(&Layer::Hardness));
     }
 }
