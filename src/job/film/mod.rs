@@ -102,7 +102,7 @@ impl Film {
     }
 
     /// What the film needs of the world at this moment: where a picture is due, and where a stage ends. Weather may be
-    /// that which the last step found: it changes less than the colours tell apart.
+    /// that which the last step found, before it carved.
     pub fn wants(&self, moment: &Moment) -> Interest {
         let (at, next) =
             if moment.stage == self.stage { (self.place(moment, self.began_yr), self.next) } else { (0.0, 0.0) };
