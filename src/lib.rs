@@ -3,7 +3,7 @@
 //!
 //! The rooms, in the order in which they may import each other (a room imports only rooms above it):
 //!
-//! - [`grid`], [`noise`], [`rmp`], [`flow`]: rasters in metres, keyed randomness, random partitions, the ways of water.
+//! - [`grid`], [`noise`], [`rmp`], [`sph`], [`flow`]: rasters in metres, keyed randomness, random partitions, particles, the ways of water.
 //!   Numerics only.
 //! - [`world`], [`process`]: what all solvers meet through, and what a solver looks like.
 //! - [`crust`]: how high a column of rock floats.
@@ -19,6 +19,7 @@
 pub mod grid;
 pub mod noise;
 pub mod rmp;
+pub mod sph;
 
 pub mod flow;
 

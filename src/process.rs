@@ -30,6 +30,12 @@ pub trait Process: Send {
         Ok(())
     }
 
+    /// What a person should know before it runs on a map of this grid, a line each: that cells are not of the size it is
+    /// made for, or how its clocks go.
+    fn remarks(&self, _grid: &Grid) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The grid it leaves behind, for those that change it. Asked while a recipe is read, so that the stages behind are
     /// asked about the right one.
     fn grid_after(&self, grid: &Grid) -> Grid {

@@ -219,7 +219,7 @@ impl Plan {
         // A file can be a sliver too.
         reader.sides(&world, &root)?;
         let stages = reader.couple(&root, stages)?;
-        reader.fit(&root, &stages, world.grid())?;
+        let remarks = reader.fit(&root, &stages, world.grid())?;
         let text = |key: &str| match root.get(key).map(|node| &node.value) {
             Some(Value::Text(text)) => Some(text.clone()),
             _ => None,
@@ -237,7 +237,7 @@ impl Plan {
             stages,
             scene,
             text: if overrides.is_empty() { source.text.clone() } else { tree::write(&root) },
-            notes: imports.notes,
+            notes: imports.notes.into_iter().chain(remarks).collect(),
         })
     }
 
@@ -419,8 +419,9 @@ impl Reader<'_> {
         Ok(made)
     }
 
-    /// Asks every stage that runs whether it goes together with the map as it is by then.
-    fn fit(&self, root: &Table, stages: &[Stage], mut grid: Grid) -> Result<(), RecipeError> {
+    /// Asks every stage that runs whether it goes together with the map as it is by then, and what should be known of it.
+    fn fit(&self, root: &Table, stages: &[Stage], mut grid: Grid) -> Result<Vec<String>, RecipeError> {
+        let mut notes = Vec::new();
         let places: BTreeMap<String, Place> =
             stage_keys(root).iter().map(StageKey::key).zip(stage_places(root)).collect();
         let all = stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.coupled));
@@ -429,9 +430,10 @@ impl Reader<'_> {
             let unfit = |e: ProcessError| self.error(place, Problem::Unfit(format!("stage '{}': {e}", stage.label)));
             let process = stage.build().map_err(unfit)?;
             process.fit(&grid).map_err(unfit)?;
+            notes.extend(process.remarks(&grid).iter().map(|remark| format!("stage '{}': {remark}", stage.label)));
             grid = process.grid_after(&grid);
         }
-        Ok(())
+        Ok(notes)
     }
 
     fn kind(&self, table: &Table, place: &Place) -> Result<&'static StageKind, RecipeError> {

@@ -41,6 +41,13 @@ const ALL: &[Preset] = presets! {
     "knickpoint"
     "hard-band"
     "continent-to-valley"
+    "alpine-valley"
+    "alpine-screes"
+    "canyon"
+    "badlands"
+    "river-source"
+    "rainstorm"
+    "volcanic-slope"
 };
 
 /// Every preset.

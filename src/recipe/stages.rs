@@ -9,7 +9,10 @@ use serde_json::Value as Json;
 use crate::{
     climate::ClimateParams,
     edit::{HardnessParams, ImportParams, UpliftParams, ZoomParams},
-    erosion::{HillslopeParams, StreamPowerParams},
+    erosion::{
+        DropletsParams, HillslopeParams, HydraulicCellsParams, PipesParams, RainParticlesParams, StreamPowerParams,
+        ThermalParams,
+    },
     process::{Placement, Process, ProcessError},
     rivers::RiversParams,
     tectonics::PlatesParams,
@@ -133,6 +136,21 @@ fn table() -> Vec<StageKind> {
         }),
         row("hillslope", "Hillslopes", "Soil creeps down slopes and rounds crests.", |creep: HillslopeParams, setting| {
             Ok(creep.process(setting.placement, setting.steps))
+        }),
+        row("thermal", "Slides", "What is too steep slides down, and lies as scree below.", |slides: ThermalParams, setting| {
+            Ok(slides.process(setting.placement, setting.steps))
+        }),
+        row("hydraulic_cells", "Storm water, cellular", "Rain dissolves rock, carries it and dries up: Olsen's automaton.", |cells: HydraulicCellsParams, setting| {
+            Ok(cells.process(setting.placement, setting.steps))
+        }),
+        row("pipes", "Storm water", "Shallow water runs over the land, carves it, and lays down what it carries.", |pipes: PipesParams, setting| {
+            Ok(pipes.process(setting.placement, setting.steps))
+        }),
+        row("rain_particles", "Rain as particles", "Particles of water run down the ground, dig rills and lay down fans.", |rain: RainParticlesParams, setting| {
+            Ok(rain.process(setting.placement, setting.steps))
+        }),
+        row("droplets", "Droplets", "Droplets run down slopes, cut gullies and lay down fans.", |droplets: DropletsParams, setting| {
+            Ok(droplets.process(setting.placement, setting.steps))
         }),
         row("uplift", "Uplift", "Sets how fast rock is raised, where and when.", |uplift: UpliftParams, setting| {
             Ok(uplift.process(setting.placement))

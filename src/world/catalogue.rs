@@ -131,6 +131,12 @@ catalogue! {
     /// Strahler's order of the stream; 0 where none runs.
     StreamOrder: "stream_order", "Stream order", "1", [0.0, 9.0], Categorical,
         Kind::Class(&["none", "1", "2", "3", "4", "5", "6", "7", "8", "9"]);
+    /// Most water that passed a cell while it ran, in the last stage that let it run.
+    Flow: "flow", "Flow of storm water", "m3/s", [0.0, 50.0], Flow, Kind::Continuous;
+    /// Greatest speed of that water.
+    FlowSpeed: "flow_speed", "Speed of storm water", "m/s", [0.0, 10.0], Sequential, Kind::Continuous;
+    /// Rock on its way in the water, as a layer of that thickness.
+    Suspended: "suspended", "Sediment in the water", "m", [0.0, 0.1], Sequential, Kind::Continuous;
 }
 
 impl Layer {

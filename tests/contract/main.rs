@@ -63,6 +63,44 @@ const CASES: &[Case] = &[
         params: "steps = 3\nduration_kyr = 1e5\nmask = 'height > 0'\n",
         may_leave_out: &[Layer::Lava],
     },
+    Case {
+        kind: "thermal",
+        params: "steps = 4\ntalus_angle_deg = 2.0\nrock_angle_deg = 3.0\n",
+        may_leave_out: &[Layer::Lava],
+    },
+    Case {
+        kind: "thermal",
+        params: "steps = 3\nmethod = 'cells'\ntalus_angle_deg = 2.0\nrock_angle_deg = 2.0\nlock = 'coast'\nmask = 'height > 0'\n",
+        may_leave_out: &[Layer::Lava],
+    },
+    Case {
+        kind: "thermal",
+        params: "steps = 3\ntalus_angle_deg = 2.0\ncoarse_levels = 2\nhard_rate = 0.2\nhard_to_m = 900.0\n",
+        may_leave_out: &[Layer::Lava],
+    },
+    Case { kind: "hydraulic_cells", params: "steps = 3\nduration_h = 1000\n", may_leave_out: &[Layer::Lava] },
+    Case {
+        kind: "hydraulic_cells",
+        params: "steps = 3\nduration_h = 1000\nsteepness = 'hard_cliffs'\nlock = 'coast'\nmask = 'height > 0'\n",
+        may_leave_out: &[Layer::Lava],
+    },
+    Case { kind: "pipes", params: "steps = 3\nduration_h = 20\nrain_mm_per_h = 300\n", may_leave_out: &[Layer::Lava] },
+    Case {
+        kind: "pipes",
+        params: "steps = 2\nduration_h = 10\nrain_mm_per_h = 300\nsediment = 'maccormack'\nflux = 'mei'\nlock = 'coast'\nmask = 'height > 0'\nrain_by_map = true\n",
+        may_leave_out: &[Layer::Lava],
+    },
+    Case {
+        kind: "rain_particles",
+        params: "steps = 3\nduration_min = 1000\nparticles = 500\n",
+        may_leave_out: &[Layer::Lava],
+    },
+    Case { kind: "droplets", params: "steps = 3\npath_m = 1e6\n", may_leave_out: &[Layer::Lava] },
+    Case {
+        kind: "droplets",
+        params: "steps = 2\npath_m = 3e5\nlock = 'coast'\nmask = 'height > 0'\n",
+        may_leave_out: &[Layer::Lava],
+    },
     case("uplift", "mm_per_yr = 0.7\n"),
     case(
         "uplift",

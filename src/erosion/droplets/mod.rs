@@ -1,0 +1,207 @@
+//! The stage `droplets`: parcels of rain run down slopes one after another, take up rock, and lay it down where they
+//! slow (after Beyer 2015), in metres and years.
+//!
+//! A droplet stands for the rain of the stage on its share of the map, so that the number of droplets smooths the
+//! result but does not deepen it, and the world's clock goes on by the years in which that rain falls.
+//!
+//! Its speed is `v² = (v² + 2·g·drop) / (1 + drag·step)`; it carries `capacity·water·sine of the slope·v`, and nears
+//! that over a distance, so that cells of another size give the same valleys. No droplet digs below the next place of
+//! its path nor builds above the one before, and what finds no room at its end spreads until it does.
+//!
+//! Droplets run one after another within windows that are cut anew for each phase (`window.rs`). The other way, to
+//! trace many against frozen ground and add up what they did, needs batches so small that two hardly ever share a
+//! gully, and still digs where they do.
+
+mod kernel;
+mod params;
+mod process;
+#[cfg(test)]
+mod tests;
+mod walk;
+mod window;
+
+pub use params::DropletsParams;
+
+use rayon::prelude::*;
+
+use crate::{
+    grid::{Grid, for_each_row, sum_f64},
+    noise::{Key, Stream},
+};
+
+use super::{
+    bed::{Bed, Family, Moved, Part, Saved},
+    leftover,
+};
+use kernel::Kernel;
+use walk::{Droplet, Law};
+use window::Window;
+
+/// Rounds in which the rain falls, at least: it comes to all of the map before it comes again.
+const ROUNDS: f64 = 16.0;
+/// Droplets on a cell in a round, at most.
+const DENSITY: f64 = 1.0 / 16.0;
+/// Phases after the last round of a step: those that are not through then end where they are.
+const PHASES: usize = 4096;
+/// Passes in which what found no room spreads after each step.
+const PASSES: usize = 2;
+/// Cells a side below which there is no slope to run down.
+const LEAST_SIDE: usize = 4;
+
+/// Cells that droplets keep from a cut: what they touch, and a step.
+fn margin(radius_cells: f64) -> usize {
+    (radius_cells + 0.5) as usize + 2
+}
+
+/// Droplets bound to their parameters and a grid.
+pub struct Droplets {
+    law: Law,
+    kernel: Kernel,
+    grid: Grid,
+    key: Key,
+    rounds: f64,
+    /// Droplets of a round, west to east and north to south.
+    strata: [usize; 2],
+    rain_m: f64,
+    /// Rock that has not found room, m by cell. Empty where there is none.
+    rest: Vec<f32>,
+    windows: Vec<Window>,
+    waiting: Vec<Droplet>,
+    steps: u64,
+}
+
+impl Droplets {
+    /// Droplets under a key.
+    pub fn new(params: &DropletsParams, grid: &Grid, key: Key) -> Self {
+        let rounds = (params.droplets_per_cell / DENSITY).ceil().max(ROUNDS);
+        let per_side = (params.droplets_per_cell / rounds).sqrt();
+        let strata = [grid.width, grid.height].map(|size| ((size as f64 * per_side).round() as usize).max(1));
+        let share = grid.cells() as f64 / (rounds * (strata[0] * strata[1]) as f64);
+        let rain_m = params.rain_m();
+        Self {
+            law: params.law(grid, rain_m * share),
+            kernel: Kernel::new(params.radius_cells(grid)),
+            grid: *grid,
+            key,
+            rounds,
+            strata,
+            rain_m,
+            rest: Vec::new(),
+            windows: Vec::new(),
+            waiting: Vec::new(),
+            steps: 0,
+        }
+    }
+
+    /// Steps that droplets have taken since this was made: what its speed is counted in.
+    pub fn steps_taken(&self) -> u64 {
+        self.steps
+    }
+
+    /// The rain of a round: one droplet somewhere in each of as many equal parts of the map.
+    fn rain(&mut self, stream: &mut Stream) {
+        let g = &self.grid;
+        // Places are counted from the first cell's centre; a map that wraps goes on to the first again.
+        let wraps = g.edges == crate::grid::Edges::Wrap;
+        let span = [g.width, g.height].map(|size| if wraps { size as f64 } else { (size - 1) as f64 });
+        let [columns, rows] = self.strata;
+        for j in 0..rows {
+            for i in 0..columns {
+                let x = (i as f64 + stream.unit()) / columns as f64 * span[0];
+                let y = (j as f64 + stream.unit()) / rows as f64 * span[1];
+                self.waiting.push(Droplet::new([x, y]));
+            }
+        }
+    }
+
+    /// Runs all droplets that wait, each until it ends or comes near to a cut; what left over the rim, m of a cell.
+    fn phase(&mut self, bed: &mut Bed, stream: &mut Stream) -> f64 {
+        let (grid, law, kernel, windows) = (self.grid, &self.law, &self.kernel, &mut self.windows);
+        let columns = window::cut(grid.width, grid.edges, stream.unit());
+        let rows = window::cut(grid.height, grid.edges, stream.unit());
+        windows.resize_with((columns.len() * rows.len()).max(windows.len()), Window::default);
+        windows.iter_mut().for_each(|window| window.pieces = None);
+        for (k, window) in windows.iter_mut().take(columns.len() * rows.len()).enumerate() {
+            window.pieces = Some([columns[k % columns.len()], rows[k / columns.len()]]);
+        }
+        let of_column = window::owners(&columns, grid.width);
+        let of_row = window::owners(&rows, grid.height);
+        for droplet in self.waiting.drain(..) {
+            let (x, y) = (of_column[droplet.at[0] as usize], of_row[droplet.at[1] as usize]);
+            windows[y * columns.len() + x].queue.push(droplet);
+        }
+        let (margin, frame, frozen) = (kernel.reach + 2, kernel.overhang(), &*bed);
+        windows.par_iter_mut().for_each(|window| {
+            if window.queue.is_empty() {
+                window.pieces = None;
+            } else {
+                window.open(frozen, frame);
+                walk::run(window, law, kernel, &grid, margin);
+            }
+        });
+        for_each_row(&mut bed.change, grid.width, |y, row| {
+            let first = of_row[y] * columns.len();
+            windows[first..first + columns.len()].iter().for_each(|window| window.close(&grid, y, row));
+        });
+        let mut left = 0.0;
+        for window in windows {
+            self.waiting.append(&mut window.later);
+            left += std::mem::take(&mut window.left);
+            self.steps += std::mem::take(&mut window.steps);
+            for (cell, load) in window.rest.drain(..) {
+                self.rest.resize(grid.cells(), 0.0);
+                self.rest[cell] += load as f32;
+            }
+        }
+        left
+    }
+}
+
+impl Family for Droplets {
+    fn advance(&mut self, bed: &mut Bed, part: Part) -> Moved {
+        let area = self.grid.cell_area_m2();
+        let rounds = part.of(self.rounds).map(|at| at.round() as u64);
+        let rain = (rounds[1] - rounds[0]) as f64 / self.rounds * self.rain_m * self.grid.cells() as f64 * area;
+        let mut left = 0.0;
+        if self.grid.width.min(self.grid.height) >= LEAST_SIDE {
+            for round in rounds[0]..rounds[1] {
+                let mut stream = self.key.with(round).stream();
+                self.rain(&mut stream);
+                left += self.phase(bed, &mut stream);
+            }
+            let mut stream = self.key.named("last").with(part.step).stream();
+            for _ in 0..PHASES {
+                if self.waiting.is_empty() {
+                    break;
+                }
+                left += self.phase(bed, &mut stream);
+            }
+            for droplet in self.waiting.drain(..).filter(|droplet| droplet.load != 0.0) {
+                self.rest.resize(self.grid.cells(), 0.0);
+                self.rest[self.grid.index(droplet.at[0] as usize, droplet.at[1] as usize)] += droplet.load as f32;
+            }
+            leftover::lay_down(bed, &mut self.rest, PASSES);
+        }
+        Moved { rock_left_m3: left * area, water_in_m3: rain, water_left_m3: rain }
+    }
+
+    fn carried_m3(&self) -> f64 {
+        sum_f64(&self.rest) * self.grid.cell_area_m2()
+    }
+
+    fn settle(&mut self, bed: &mut Bed) -> Moved {
+        leftover::lay_all(bed, &mut self.rest);
+        self.rest.clear();
+        Moved::default()
+    }
+
+    fn save(&self) -> Saved {
+        let fields = if self.rest.is_empty() { Vec::new() } else { vec![("rest", self.rest.clone())] };
+        Saved { fields, blob: Vec::new() }
+    }
+
+    fn restore(&mut self, field: &dyn Fn(&str) -> Option<Vec<f32>>, _blob: &[u8]) -> Option<()> {
+        self.rest = field("rest").unwrap_or_default();
+        (self.rest.is_empty() || self.rest.len() == self.grid.cells()).then_some(())
+    }
+}

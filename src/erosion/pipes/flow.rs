@@ -1,0 +1,195 @@
+//! Water over faces, row by row. Rows of cells have one cell more at either end, which stands for what lies beyond.
+
+use super::rules::{Beat, GRAVITY, PIPE_M, RIM_FALL, Rules};
+
+/// The greater, in one instruction: `f32::max` takes three to be right about what is not a number.
+#[inline(always)]
+pub fn hi(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The lesser.
+#[inline(always)]
+pub fn lo(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// `x^(−1/3)` to 2e-5 for positive normal numbers: the exponent by a third, then Newton twice, without a division.
+#[inline(always)]
+pub fn inverse_cbrt(x: f32) -> f32 {
+    let bits = x.to_bits();
+    let third = (bits >> 2) + (bits >> 4);
+    let third = third + (third >> 4);
+    let third = third + (third >> 8);
+    let r = f32::from_bits(0x54a2_fa8c - third);
+    let part = x * (1.0 / 3.0);
+    let r = r * (4.0 / 3.0 - part * (r * r * r));
+    r * (4.0 / 3.0 - part * (r * r * r))
+}
+
+/// `1/x` to 2e-7 for positive normal numbers below 1e37, by Newton: dividing takes the processor four times as long.
+#[inline(always)]
+pub fn inverse(x: f32) -> f32 {
+    let r = f32::from_bits(0x7ef3_11c3 - x.to_bits());
+    let r = r * (2.0 - x * r);
+    let r = r * (2.0 - x * r);
+    r * (2.0 - x * r)
+}
+
+/// `1/√x` to 5e-6 for positive normal numbers.
+#[inline(always)]
+pub fn inverse_root(x: f32) -> f32 {
+    let half = 0.5 * x;
+    let r = f32::from_bits(0x5f37_59df - (x.to_bits() >> 1));
+    let r = r * (1.5 - half * (r * r));
+    r * (1.5 - half * (r * r))
+}
+
+/// What a face needs to know about the cells at its two sides.
+#[derive(Clone, Copy)]
+pub struct Sides<'a> {
+    pub start: [&'a [f32]; 2],
+    /// Change of the bed and depth together.
+    pub wet: [&'a [f32]; 2],
+    pub depth: [&'a [f32]; 2],
+    /// 1 on land, 0 in the sea.
+    pub land: [&'a [f32]; 2],
+}
+
+impl<'a> Sides<'a> {
+    #[inline(always)]
+    pub fn cut(self, n: usize) -> Self {
+        let cut = |pair: [&'a [f32]; 2]| [&pair[0][..n], &pair[1][..n]];
+        Self { start: cut(self.start), wet: cut(self.wet), depth: cut(self.depth), land: cut(self.land) }
+    }
+
+    /// Fall of the surface from one side to the other, and depth of what passes: never above the sill between them.
+    #[inline(always)]
+    pub fn fall(&self, i: usize) -> (f32, f32) {
+        // Starts apart from the rest: their difference is exact, and lakes stay level to a micrometre on any mountain.
+        let fall = (self.start[0][i] - self.start[1][i]) + (self.wet[0][i] - self.wet[1][i]);
+        let (a, b) = (self.depth[0][i], self.depth[1][i]);
+        let (up, down) = if fall >= 0.0 { (a, b) } else { (b, a) };
+        (fall, hi(lo(up, down + fall.abs()), PIPE_M))
+    }
+
+    /// 0 between two cells of the sea.
+    #[inline(always)]
+    fn open(&self, i: usize) -> f32 {
+        hi(self.land[0][i], self.land[1][i])
+    }
+}
+
+/// The flux after friction: the positive root of `a·q² + q = y`, which is Manning's law where it no longer changes.
+#[inline(always)]
+fn rub(y: f32, drag: f32, deep: f32) -> f32 {
+    let r = inverse_cbrt(deep);
+    let r2 = r * r;
+    let r7 = r2 * r2 * (r2 * r);
+    let inner = 1.0 + drag * r7 * y.abs();
+    (y + y) * inverse(1.0 + inner * inverse_root(inner))
+}
+
+/// Signed fluxes over a row of faces, m²/s, positive from side 0 to side 1: the old ones become the new ones.
+#[inline(always)]
+pub fn push(beat: &Beat, sides: Sides, flux: &mut [f32]) {
+    let sides = sides.cut(flux.len());
+    let (pull, drag) = (beat.pull, beat.drag);
+    if drag == 0.0 {
+        for i in 0..flux.len() {
+            let (fall, deep) = sides.fall(i);
+            flux[i] = (flux[i] + pull * deep * fall) * sides.open(i);
+        }
+        return;
+    }
+    for i in 0..flux.len() {
+        let (fall, deep) = sides.fall(i);
+        flux[i] = rub(flux[i] + pull * deep * fall, drag, deep) * sides.open(i);
+    }
+}
+
+/// One-sided fluxes over a row of faces: `ahead` from side 0 to side 1, `back` the other way.
+#[inline(always)]
+pub fn push_apart(beat: &Beat, sides: Sides, ahead: &mut [f32], back: &mut [f32]) {
+    let n = ahead.len();
+    let (sides, back) = (sides.cut(n), &mut back[..n]);
+    for i in 0..n {
+        let (fall, deep) = sides.fall(i);
+        let gain = beat.pull * deep * fall;
+        let (a, b) = (hi(ahead[i] + gain, 0.0), hi(back[i] - gain, 0.0));
+        let free = beat.drag == 0.0;
+        ahead[i] = if free { a } else { rub(a, beat.drag, deep) } * sides.open(i);
+        back[i] = if free { b } else { rub(b, beat.drag, deep) } * sides.open(i);
+    }
+}
+
+/// Keeps what a cell gives below what it has, however the inverse is rounded.
+const LESS: f32 = 1.0 - 1e-6;
+
+/// The share of its outflow that each cell can really give; `x` are the faces of the row from west to east.
+#[inline(always)]
+pub fn ration(pace: f32, depth: &[f32], x: &[f32], [north, south]: [&[f32]; 2], out: &mut [f32]) {
+    let n = out.len();
+    let (depth, east, west) = (&depth[..n], &x[1..][..n], &x[..n]);
+    let (north, south) = (&north[..n], &south[..n]);
+    for i in 0..n {
+        let leaves = (hi(east[i], 0.0) + hi(-west[i], 0.0)) + (hi(south[i], 0.0) + hi(-north[i], 0.0));
+        let wanted = leaves * pace;
+        out[i] = if wanted > depth[i] { depth[i] * (LESS * inverse(hi(wanted, 1e-30))) } else { 1.0 };
+    }
+}
+
+/// The same for one-sided fluxes: those ahead to the east and south, those back to the west and north.
+#[inline(always)]
+pub fn ration_apart(pace: f32, depth: &[f32], ahead: [&[f32]; 2], back: [&[f32]; 2], out: &mut [f32]) {
+    let n = out.len();
+    let (depth, east, south) = (&depth[..n], &ahead[0][1..][..n], &ahead[1][..n]);
+    let (west, north) = (&back[0][..n], &back[1][..n]);
+    for i in 0..n {
+        let wanted = ((east[i] + west[i]) + (south[i] + north[i])) * pace;
+        out[i] = if wanted > depth[i] { depth[i] * (LESS * inverse(hi(wanted, 1e-30))) } else { 1.0 };
+    }
+}
+
+/// Fluxes by their donors' shares, and the sediment that goes with them.
+#[inline(always)]
+pub fn give(share: [&[f32]; 2], thick: [&[f32]; 2], flux: &mut [f32], load: &mut [f32]) {
+    let n = flux.len();
+    let (share, thick) = ([&share[0][..n], &share[1][..n]], [&thick[0][..n], &thick[1][..n]]);
+    let load = &mut load[..n];
+    for i in 0..n {
+        let ahead = flux[i] >= 0.0;
+        let q = flux[i] * if ahead { share[0][i] } else { share[1][i] };
+        flux[i] = q;
+        load[i] = q * if ahead { thick[0][i] } else { thick[1][i] };
+    }
+}
+
+/// The same for one-sided fluxes; `flux` becomes what passes in all, `ahead` and `back` are kept for the next step.
+#[inline(always)]
+pub fn give_apart(
+    share: [&[f32]; 2],
+    thick: [&[f32]; 2],
+    ahead: &mut [f32],
+    back: &mut [f32],
+    flux: &mut [f32],
+    load: &mut [f32],
+) {
+    for i in 0..flux.len() {
+        let (a, b) = (ahead[i] * share[0][i], back[i] * share[1][i]);
+        ahead[i] = a;
+        back[i] = b;
+        flux[i] = a - b;
+        load[i] = a * thick[0][i] - b * thick[1][i];
+    }
+}
+
+/// What a cell at an open rim lets go, m²/s: water keeps its depth and the ground its fall, as in an endless slope, but no
+/// faster than its waves.
+#[inline(always)]
+pub fn spill(rules: &Rules, depth: f32, fall_m: f32) -> f32 {
+    let d = hi(depth, PIPE_M);
+    let fall = hi(fall_m / rules.cell_m, RIM_FALL);
+    let manning = d * d * inverse_cbrt(d) * fall.sqrt() * rules.smooth;
+    lo(manning, d * (GRAVITY * d).sqrt())
+}

@@ -1,0 +1,125 @@
+//! What water does to a row of cells: its depth, what it carries, what it takes from the bed and lays down.
+
+use super::{
+    flow::{hi, inverse, inverse_root, lo},
+    rules::{BUMP, Beat, Rules, SHEET_M, STILL_M, STRIDE, THICKEST, TIMID},
+};
+
+/// A row of cells before the step. Rows of `ground` and `depth` begin one cell west of the map.
+pub struct Before<'a> {
+    /// Heights of the rows to the north, here and to the south.
+    pub ground: [&'a [f32]; 3],
+    pub depth: &'a [f32],
+    /// Share of exchange that cells have; none in the sea.
+    pub act: &'a [f32],
+    /// Sediment, m.
+    pub load: &'a [f32],
+    /// Faces from west to east, of water and of sediment.
+    pub x: [&'a [f32]; 2],
+    pub north: [&'a [f32]; 2],
+    pub south: [&'a [f32]; 2],
+}
+
+/// A row of cells after the step.
+pub struct After<'a> {
+    pub depth: &'a mut [f32],
+    pub load: &'a mut [f32],
+    /// What is to be added to the bed, m.
+    pub bed: &'a mut [f32],
+    /// Square of the speed, m²/s².
+    pub speed2: &'a mut [f32],
+    /// Water that dried up, m, and that rounding made.
+    pub dried: &'a mut [f32],
+    pub made: &'a mut [f32],
+}
+
+/// A smooth step from 0 to 1.
+#[inline(always)]
+pub fn ramp(t: f32) -> f32 {
+    let t = lo(hi(t, 0.0), 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// How far a height is from the sea's, less what rounding may hide.
+#[inline(always)]
+pub fn room(rules: &Rules, height: f32) -> f32 {
+    hi((height - rules.sea_m).abs() - 4e-7 * (height.abs() + rules.sea_m.abs()), 0.0)
+}
+
+/// Sums of water and sediment over the faces, then exchange with the bed.
+#[inline(always)]
+pub fn exchange(rules: &Rules, beat: &Beat, before: &Before, after: &mut After, soft: &[f32]) {
+    let n = after.depth.len();
+    let [north, here, south] = before.ground.map(|row| &row[..n + 2]);
+    let (depth, act, load) = (&before.depth[1..][..n], &before.act[1..][..n], &before.load[..n]);
+    let [qw, sw] = before.x.map(|row| &row[..n]);
+    let [qe, se] = before.x.map(|row| &row[1..][..n]);
+    let [qn, sn] = before.north.map(|row| &row[..n]);
+    let [qs, ss] = before.south.map(|row| &row[..n]);
+    let (new_depth, new_load) = (&mut after.depth[..n], &mut after.load[..n]);
+    let (bed, speed2) = (&mut after.bed[..n], &mut after.speed2[..n]);
+    let (dried, made) = (&mut after.dried[..n], &mut after.made[..n]);
+    let soft = &soft[..n];
+    let fastest2 = beat.fastest * beat.fastest;
+    let slopes = 0.5 / rules.cell_m;
+    let (stride_m, bump_m, per_factor) = (STRIDE * rules.cell_m, BUMP * rules.cell_m, 1.0 / rules.factor);
+    let locked = if rules.locked { 0.25 } else { f32::MAX };
+    for i in 0..n {
+        let d1 = depth[i];
+        let came = beat.pace * ((qw[i] - qe[i]) + (qn[i] - qs[i]));
+        let d2 = hi(d1 + came, 0.0);
+        let carried = hi(load[i] + beat.pace * ((sw[i] - se[i]) + (sn[i] - ss[i])), 0.0);
+        let per_depth = inverse(hi(0.5 * (d1 + d2), STILL_M));
+        // Squares before the mean: where a stream turns, each face has half of it, and it is as fast as where it is straight.
+        let through2 = (qw[i] * qw[i] + qe[i] * qe[i]) + (qn[i] * qn[i] + qs[i] * qs[i]);
+        let v2 = lo(0.5 * through2 * (per_depth * per_depth), fastest2);
+        let (u, v) = (0.5 * (qw[i] + qe[i]) * per_depth, 0.5 * (qn[i] + qs[i]) * per_depth);
+        let (z, w, e, n, s) = (here[i + 1], here[i], here[i + 2], north[i + 1], south[i + 1]);
+        let (gx, gy) = (slopes * (e - w), slopes * (s - n));
+        let g2 = gx * gx + gy * gy;
+        let sine2 = hi(1.0 - inverse(1.0 + g2), rules.tilt2);
+        let deep = ramp(d2 * rules.per_film) * (1.0 - ramp((d2 - rules.shallow_m) * rules.per_deep));
+        let force2 = v2 * sine2;
+        let thick = lo(rules.capacity * deep * (force2 * inverse_root(hi(force2, 1e-30))), THICKEST);
+        let lack = thick * d2 - carried;
+        let share = if lack > 0.0 { beat.dissolve * soft[i] } else { beat.settle };
+        let low = lo(lo(w, e), lo(n, s));
+        let mean = 0.25 * ((w + e) + (n + s));
+        let most = lo(stride_m, locked * room(rules, z));
+        let dig = lo(TIMID * hi(z - low, 0.0), most);
+        let fill = lo(TIMID * hi(mean - z + bump_m, 0.0), most);
+        let worn = hi(lo(rules.factor * (share * act[i] * lack), dig), -fill);
+        let worn = hi(worn, -rules.factor * carried);
+        new_load[i] = hi(carried + worn * per_factor, 0.0);
+        bed[i] = -worn;
+        let left = hi(d2 - beat.dry_m, 0.0);
+        new_depth[i] = left;
+        dried[i] = d2 - left;
+        // What the depth gained and no flux brought: rounding, and the cut at nothing.
+        made[i] = (d2 - d1) - came;
+        speed2[i] = if d2 > SHEET_M { u * u + v * v } else { 0.0 };
+    }
+}
+
+/// Adds to a bed what it is to get; `rest` keeps what is too small for the sum. Softness follows.
+#[inline(always)]
+pub fn lay(old: &[f32], bed: &[f32], new: &mut [f32], rest: &mut [f32]) {
+    let n = new.len();
+    let (old, bed, rest) = (&old[..n], &bed[..n], &mut rest[..n]);
+    for i in 0..n {
+        // Knuth's two-sum: the sum and what rounding took from it.
+        let add = bed[i] + rest[i];
+        let sum = old[i] + add;
+        let back = sum - old[i];
+        rest[i] = (old[i] - (sum - back)) + (add - back);
+        new[i] = sum;
+    }
+}
+
+/// What is laid down is loose; what is worn off brings the rock up again.
+#[inline(always)]
+pub fn soften(rules: &Rules, bed: &[f32], soft: &mut [f32]) {
+    for (soft, bed) in soft.iter_mut().zip(bed) {
+        *soft = lo(hi(*soft + rules.softening * bed, rules.rock_softness), 1.0);
+    }
+}

@@ -1,0 +1,56 @@
+//! The stage `rain_particles`.
+
+use super::{RainParticles, RainParticlesParams};
+use crate::{
+    erosion::{
+        bed::Bed,
+        stage::{FamilyParams, Lock, Stage, clocks},
+    },
+    grid::Grid,
+    noise::Key,
+    process::{Placement, Process, ProcessError},
+    world::{Layer, World},
+};
+
+/// Minutes in a year.
+const YEAR_MIN: f64 = 60.0 * 8766.0;
+
+impl RainParticlesParams {
+    /// The stage as a process; `steps` asks for that many.
+    pub fn process(self, placement: Placement, steps: Option<u64>) -> Box<dyn Process> {
+        Box::new(Stage::new(self, placement, steps))
+    }
+}
+
+impl FamilyParams for RainParticlesParams {
+    type Solver = RainParticles;
+    const WRITES: &'static [Layer] =
+        &[Layer::Bedrock, Layer::Lava, Layer::Sediment, Layer::Water, Layer::Wear, Layer::Deposit];
+    const WATER: bool = true;
+    const STEPS: u64 = 100;
+
+    fn lock(&self) -> Lock {
+        self.lock
+    }
+
+    fn duration_yr(&self) -> f64 {
+        self.duration_min * self.morphological_factor / YEAR_MIN
+    }
+
+    fn check(&self, grid: &Grid) -> Result<(), String> {
+        RainParticlesParams::check(self, grid)
+    }
+
+    fn remarks(&self, grid: &Grid) -> Vec<String> {
+        let clocks = clocks(self.duration_min / 60.0, self.duration_yr(), self.morphological_factor);
+        self.warning(grid).into_iter().chain([clocks]).collect()
+    }
+
+    fn solver(&self, bed: &Bed, _world: &World, key: Key) -> Result<RainParticles, ProcessError> {
+        RainParticles::new(self, bed.grid, key).map_err(ProcessError::Unfit)
+    }
+
+    fn show(&self, solver: &RainParticles, _bed: &Bed, world: &mut World) {
+        world.set_layer(Layer::Water, solver.depth_m());
+    }
+}

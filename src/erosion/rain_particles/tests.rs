@@ -1,0 +1,317 @@
+//! Closed books, water that obeys the ground, and the same bits every time.
+
+use proptest::prelude::*;
+
+use super::super::bed::{Bed, Family, Moved, Part};
+use super::{RainParticles, RainParticlesParams, params::GRAVITY};
+use crate::{
+    grid::{Edges, Grid},
+    noise::{Fbm, Key},
+};
+
+fn bed(grid: Grid, height: impl Fn(usize, usize) -> f64) -> Bed {
+    let start = (0..grid.cells()).map(|i| height(i % grid.width, i / grid.width) as f32).collect();
+    Bed { grid, start, change: vec![0.0; grid.cells()], rate: Vec::new(), sea_m: -1e9, locked: false }
+}
+
+fn hill(edges: Edges) -> Bed {
+    let grid = Grid::new(40, 32, 40.0, edges);
+    let land = Fbm::new(25.0, 0.8).octaves(Key::new(3), 1.0);
+    bed(grid, |x, y| 6.0 * land.value(grid.center_m(x, y)) + 20.0)
+}
+
+fn params() -> RainParticlesParams {
+    RainParticlesParams { duration_min: 0.3, lifespan_s: 8.0, ..RainParticlesParams::default() }
+}
+
+fn run(rain: &mut RainParticles, bed: &mut Bed, from: u64, to: u64, steps: u64) -> Moved {
+    (from..to).fold(Moved::default(), |sum, step| {
+        let moved = rain.advance(bed, Part { step, steps });
+        Moved {
+            rock_left_m3: sum.rock_left_m3 + moved.rock_left_m3,
+            water_in_m3: sum.water_in_m3 + moved.water_in_m3,
+            water_left_m3: sum.water_left_m3 + moved.water_left_m3,
+        }
+    })
+}
+
+/// What the books are off by, and what was moved, m³.
+fn books(rain: &RainParticles, bed: &Bed, left_m3: f64) -> (f64, f64) {
+    let sum: f64 = bed.change.iter().map(|&change| change as f64).sum();
+    let size: f64 = bed.change.iter().map(|&change| change.abs() as f64).sum();
+    let area = bed.grid.cell_area_m2();
+    (sum * area + rain.carried_m3() + left_m3, size * area)
+}
+
+#[test]
+fn the_books_close() {
+    for edges in [Edges::Open, Edges::Closed, Edges::Wrap] {
+        let mut bed = hill(edges);
+        bed.sea_m = 12.0;
+        bed.rate = (0..bed.grid.cells()).map(|i| if i % 7 == 0 { 0.0 } else { 0.9 }).collect();
+        let mut rain = RainParticles::new(&params(), bed.grid, Key::new(1)).unwrap();
+        let moved = run(&mut rain, &mut bed, 0, 3, 3);
+        let (off, size) = books(&rain, &bed, moved.rock_left_m3);
+        assert!(size > 1.0 && off.abs() < 1e-9 * size, "{off} of {size}");
+        let alive = rain.seen().x_m.len() as f64 * rain.particle_m3();
+        assert!((moved.water_in_m3 - moved.water_left_m3 - alive).abs() < 1e-6 && moved.water_left_m3 > 1.0);
+        assert!(moved.rock_left_m3 > 0.0 || edges != Edges::Open);
+        rain.settle(&mut bed);
+        let (off, size) = books(&rain, &bed, moved.rock_left_m3);
+        assert!(off.abs() < 1e-9 * size && rain.carried_m3().abs() < 1e-5 * size, "{off} {}", rain.carried_m3());
+        assert!((0..bed.grid.cells()).all(|i| bed.rate(i) > 0.0 || bed.change[i] == 0.0));
+    }
+}
+
+#[test]
+fn land_stays_land_and_sea_stays_sea() {
+    let mut bed = hill(Edges::Open);
+    (bed.sea_m, bed.locked) = (19.0, true);
+    let below = |bed: &Bed| (0..bed.grid.cells()).map(|i| bed.height(i) < bed.sea_m).collect::<Vec<_>>();
+    let before = below(&bed);
+    let more = RainParticlesParams { morphological_factor: 100.0, ..params() };
+    let mut rain = RainParticles::new(&more, bed.grid, Key::new(1)).unwrap();
+    let moved = run(&mut rain, &mut bed, 0, 2, 2);
+    rain.settle(&mut bed);
+    let (off, size) = books(&rain, &bed, moved.rock_left_m3);
+    assert!(size > 10.0 && off.abs() < 1e-9 * size);
+    assert_eq!(before, below(&bed));
+}
+
+#[test]
+fn a_drop_never_goes_through_the_ground() {
+    let grid = Grid::new(60, 12, 60.0, Edges::Closed);
+    for slope in [0.0, 0.4, 1.5] {
+        let mut bed = bed(grid, |x, _| slope * (60.0 - x as f64));
+        let calm = RainParticlesParams { rain_mm_per_h: 0.0, restitution: 0.2, acidity_per_s: 0.0, ..params() };
+        let mut rain = RainParticles::new(&calm, grid, Key::new(1)).unwrap();
+        let top = slope * 50.0 + 15.0;
+        assert_eq!(rain.fill(&bed, [10.0, 6.0, top], [10.5, 6.5, top + 0.5]), 1);
+        let mut lowest = f64::INFINITY;
+        for step in 0..400 {
+            rain.advance(&mut bed, Part { step, steps: 1200 });
+            let seen = rain.seen();
+            let ground = slope * (60.5 - seen.x_m[0] as f64) - seen.datum_m as f64;
+            let gap = (seen.z_m[0] as f64 - ground) / (1.0 + slope * slope).sqrt();
+            // The rim beyond the outermost centres is level.
+            if seen.x_m[0] < 59.0 {
+                lowest = lowest.min(gap);
+            }
+        }
+        // Half a spacing is its radius; 1 % for f32 at tens of metres.
+        assert!(lowest > 0.25 * 0.99 && lowest < 0.26, "{slope}: {lowest}");
+    }
+}
+
+#[test]
+fn a_slide_ends_at_the_speed_that_friction_allows() {
+    let grid = Grid::new(90, 8, 90.0, Edges::Open);
+    for (slope, friction) in [(0.5f64, 0.1), (0.2, 0.3)] {
+        let mut bed = bed(grid, |x, _| slope * (90.0 - x as f64));
+        let slide =
+            RainParticlesParams { rain_mm_per_h: 0.0, friction, lifespan_s: 100.0, acidity_per_s: 0.0, ..params() };
+        let mut rain = RainParticles::new(&slide, grid, Key::new(1)).unwrap();
+        rain.fill(&bed, [5.0, 4.0, slope * 85.0 + 0.3], [5.5, 4.5, slope * 85.0 + 0.8]);
+        rain.advance(&mut bed, Part { step: 0, steps: 1 });
+        let sine = slope / (1.0 + slope * slope).sqrt();
+        let want = (GRAVITY * sine * 0.5 / friction).sqrt();
+        let v = rain.seen().velocity_m_per_s.map(|v| v[0] as f64);
+        let speed = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+        assert!((speed / want - 1.0).abs() < 0.02, "{speed} for {want}");
+    }
+}
+
+/// A pool over a world that wraps, settled.
+fn pool(depth_m: f64) -> (RainParticles, Bed) {
+    let grid = Grid::new(6, 6, 6.0, Edges::Wrap);
+    let mut bed = bed(grid, |_, _| 100.0);
+    let still = RainParticlesParams {
+        duration_min: 0.2,
+        rain_mm_per_h: 0.0,
+        lifespan_s: 1e3,
+        viscosity_m2_per_s: 0.3,
+        ..params()
+    };
+    let mut rain = RainParticles::new(&still, grid, Key::new(1)).unwrap();
+    rain.fill(&bed, [0.0, 0.0, 100.0], [6.0, 6.0, 100.0 + depth_m]);
+    rain.advance(&mut bed, Part { step: 0, steps: 1 });
+    (rain, bed)
+}
+
+#[test]
+fn a_column_settles_to_the_weight_above() {
+    let (rain, _) = pool(4.0);
+    let (water, z) = (rain.water(), rain.seen().z_m);
+    let top = z.iter().fold(0.0f32, |a, &b| a.max(b)) as f64 + 0.25;
+    // Pressed by 1 % in the mean; and the surface, where half of every kernel is empty, draws together by a third of a layer.
+    assert!((top - 4.0).abs() < 0.25, "{top}");
+    for (low, high) in [(0.5, 1.0), (1.0, 2.0), (2.0, 3.0)] {
+        let inside: Vec<usize> = (0..z.len()).filter(|&i| (low..high).contains(&(z[i] as f64))).collect();
+        let mean = |f: &dyn Fn(usize) -> f64| inside.iter().map(|&i| f(i)).sum::<f64>() / inside.len() as f64;
+        let pressure = mean(&|i| water.sound * water.sound * (water.density()[i] as f64 - 1.0).max(0.0));
+        let want = mean(&|i| GRAVITY * (top - z[i] as f64));
+        // A twentieth of the pressure at the bottom: layers are half a metre thick.
+        assert!((pressure - want).abs() < 0.05 * GRAVITY * 4.0, "{low}: {pressure} for {want}");
+    }
+}
+
+#[test]
+fn standing_water_digs_nothing() {
+    let (_, bed) = pool(2.0);
+    assert!(bed.change.iter().all(|&change| change == 0.0));
+    // Nor in a bowl, once it has come to rest.
+    let grid = Grid::new(16, 16, 16.0, Edges::Closed);
+    let mut bed = self::bed(grid, |x, y| 0.05 * ((x as f64 - 7.5).powi(2) + (y as f64 - 7.5).powi(2)));
+    let still = RainParticlesParams { duration_min: 1.0, rain_mm_per_h: 0.0, lifespan_s: 1e4, ..params() };
+    let mut rain = RainParticles::new(&still, grid, Key::new(1)).unwrap();
+    rain.fill(&bed, [5.0, 5.0, 0.0], [11.0, 11.0, 2.0]);
+    run(&mut rain, &mut bed, 0, 3, 4);
+    let before = bed.change.clone();
+    run(&mut rain, &mut bed, 3, 4, 4);
+    // It still lays down what it stirred up before.
+    let (dug, most) = bed
+        .change
+        .iter()
+        .zip(&before)
+        .fold((0.0f32, 0.0f32), |(dug, most), (after, before)| (dug.max(before - after), most.max(before.abs())));
+    assert!(dug < 1e-5 && most > 1e-3, "{dug} {most}");
+}
+
+fn bits(bed: &Bed, rain: &RainParticles) -> (Vec<u32>, Vec<u8>) {
+    (bed.change.iter().map(|change| change.to_bits()).collect(), rain.save().blob)
+}
+
+#[test]
+fn threads_give_the_same_bits_and_rain_comes_again() {
+    let run = |threads: usize, seed: u64| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut bed = hill(Edges::Wrap);
+            let mut rain = RainParticles::new(&params(), bed.grid, Key::new(seed)).unwrap();
+            run(&mut rain, &mut bed, 0, 2, 2);
+            bits(&bed, &rain)
+        })
+    };
+    let one = run(1, 1);
+    assert!(one == run(2, 1) && one == run(8, 1) && one != run(1, 2));
+}
+
+#[test]
+fn a_saved_run_goes_on_as_if_never_stopped() {
+    let start = || {
+        let bed = hill(Edges::Open);
+        let rain = RainParticles::new(&params(), bed.grid, Key::new(1)).unwrap();
+        (bed, rain)
+    };
+    let (mut bed, mut rain) = start();
+    run(&mut rain, &mut bed, 0, 2, 4);
+    let (saved, kept) = (rain.save(), bed.clone());
+    run(&mut rain, &mut bed, 2, 4, 4);
+    let (_, mut other) = start();
+    let field = |name: &str| saved.fields.iter().find(|field| field.0 == name).map(|field| field.1.clone());
+    other.restore(&field, &saved.blob).unwrap();
+    assert_eq!(other.save(), saved);
+    let mut again = kept;
+    run(&mut other, &mut again, 2, 4, 4);
+    assert!(bits(&bed, &rain) == bits(&again, &other));
+    // What is cut short or from another layout is refused.
+    for blob in [&saved.blob[..saved.blob.len() - 1], &saved.blob[8..], &[]] {
+        assert!(other.restore(&field, blob).is_none());
+    }
+    assert!(other.restore(&|_| None, &saved.blob).is_none());
+}
+
+#[test]
+fn drops_are_born_apart_and_fall_where_it_rains() {
+    let mut bed = hill(Edges::Open);
+    let disc =
+        RainParticlesParams { rain_radius: 0.2, rain_x: 0.3, rain_mm_per_h: 2e4, duration_min: 0.01, ..params() };
+    let mut rain = RainParticles::new(&disc, bed.grid, Key::new(1)).unwrap();
+    let moved = rain.advance(&mut bed, Part { step: 0, steps: 1 });
+    let seen = rain.seen();
+    let n = seen.x_m.len();
+    // π·6.4² m² at 20 m/h for 0.6 s.
+    assert!((moved.water_in_m3 - 0.43).abs() < 0.25 && n > 0, "{}", moved.water_in_m3);
+    for i in 0..n {
+        assert!((seen.x_m[i] - 12.0).hypot(seen.y_m[i] - 16.0) < 6.4 + 2.0);
+    }
+    let depth: f64 = rain.depth_m().data.iter().map(|&depth| depth as f64).sum();
+    assert!((depth - n as f64 * 0.125).abs() < 1e-4);
+}
+
+#[test]
+fn what_cannot_run_is_refused_with_the_fix() {
+    let grid = Grid::new(64, 64, 64.0, Edges::Open);
+    let with = |change: &dyn Fn(&mut RainParticlesParams)| {
+        let mut params = RainParticlesParams::default();
+        change(&mut params);
+        params.check(&grid)
+    };
+    assert_eq!(with(&|_| ()), Ok(()));
+    assert!(with(&|p| p.spacing_m = 3.0).unwrap_err().contains("spacing_m from 0.050 to 1.000"));
+    assert!(
+        with(&|p| (p.viscosity_m2_per_s, p.duration_min) = (100.0, 30.0))
+            .is_err_and(|error| error.contains("sub-steps"))
+    );
+    assert!(with(&|p| p.duration_min = 1000.0).is_err());
+    assert_eq!(RainParticlesParams::default().warning(&grid), None);
+    assert!(RainParticlesParams::default().warning(&Grid { cell_m: 30.0, ..grid }).is_some());
+}
+
+fn edges() -> impl Strategy<Value = Edges> {
+    prop_oneof![Just(Edges::Open), Just(Edges::Closed), Just(Edges::Wrap)]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn ugly_parameters_and_ugly_ground_stay_finite(
+        (width, height, edges, cell) in (1usize..14, 1usize..14, edges(), -1.0f64..4.0),
+        (relief, kind, sea, locked) in (-1.0f64..6.0, 0u8..4, 0.0f64..1.0, any::<bool>()),
+        (spacing, rain, lifespan, radius) in (0.1f64..1.0, -1.0f64..5.0, 0.0f64..3.0, 0.0f64..1.0),
+        (viscosity, tension, restitution, friction) in (-4.0f64..2.0, 0.0f64..10.0, 0.0f64..0.2, -2.3f64..1.0),
+        (capacity, acidity, factor, seed) in (0.0f64..1.0, 0.0f64..100.0, 0.0f64..5.0, any::<u64>()),
+    ) {
+        let ten = |power: f64| libm::pow(10.0, power);
+        let grid = Grid::new(width, height, width as f64 * ten(cell), edges);
+        let mut stream = Key::new(seed).stream();
+        let random: Vec<f64> = (0..grid.cells()).map(|_| stream.unit()).collect();
+        let mut bed = bed(grid, |x, y| ten(relief) * match kind {
+            0 => 1.0,
+            1 => random[y * width + x],
+            2 => f64::from(x == width / 2 && y == height / 2),
+            _ => f64::from(x != width / 2 || y != height / 2),
+        });
+        bed.sea_m = (ten(relief) * (2.0 * sea - 1.0)) as f32;
+        bed.locked = locked;
+        let mut params = RainParticlesParams {
+            duration_min: 1.0,
+            particles: 400.0,
+            spacing_m: spacing * grid.cell_m,
+            rain_mm_per_h: ten(rain),
+            lifespan_s: ten(lifespan),
+            rain_radius: radius,
+            viscosity_m2_per_s: ten(viscosity),
+            surface_tension_n_per_m: tension,
+            restitution,
+            friction: ten(friction),
+            capacity_s_per_m: capacity,
+            acidity_per_s: acidity,
+            morphological_factor: ten(factor),
+            ..RainParticlesParams::default()
+        };
+        params.duration_min *= 1000.0 / params.most_sub_steps(&grid);
+        let mut rain = RainParticles::new(&params, grid, Key::new(seed)).unwrap();
+        let high = ten(relief) + 4.0 * params.spacing_m;
+        rain.fill(&bed, [0.0, 0.0, high - 8.0 * params.spacing_m], [4.0 * params.spacing_m, 4.0 * params.spacing_m, high]);
+        let moved = run(&mut rain, &mut bed, 0, 2, 2);
+        let seen = rain.seen();
+        prop_assert!([seen.x_m, seen.y_m, seen.z_m].into_iter().chain(seen.velocity_m_per_s).flatten().all(|v| v.is_finite()));
+        rain.settle(&mut bed);
+        prop_assert!(bed.change.iter().all(|change| change.is_finite()));
+        let (off, size) = books(&rain, &bed, moved.rock_left_m3);
+        prop_assert!(off.abs() <= 1e-6 * (size + moved.rock_left_m3), "{off} of {size}");
+        prop_assert!((moved.water_left_m3).is_finite());
+    }
+}

@@ -1,0 +1,288 @@
+//! A family of erosion as a stage of a recipe: reads the column of rock and what stands on it into a bed, lets the family
+//! work on it step by step, and writes the column, the books and what the family shows after each.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    bed::{Bed, Family, Moved, Part, Saved},
+    column::{Change, Column},
+};
+use crate::{
+    grid::{Field, Grid, sum_f64},
+    noise::Key,
+    process::{Context, Placement, Process, ProcessError, State, Step},
+    world::{Layer, Matter, World},
+};
+
+/// What a stage leaves where it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Lock {
+    /// Nothing.
+    #[default]
+    None,
+    /// Land stays land, and sea sea.
+    Coast,
+}
+
+/// The parameters of a family, and how its solver is made of them.
+pub trait FamilyParams: Send + Sync + 'static {
+    /// What works on the bed.
+    type Solver: Family;
+
+    /// Layers it may change or make.
+    const WRITES: &'static [Layer];
+
+    /// Layers of the greatest value so far: begun anew.
+    const PEAKS: &'static [Layer] = &[];
+
+    /// Whether water stands on the ground while it works, and is booked.
+    const WATER: bool;
+
+    /// Steps that a stage is divided into where the recipe does not say.
+    const STEPS: u64;
+
+    /// What stays where it is.
+    fn lock(&self) -> Lock;
+
+    /// What passes on the clock of the land, years.
+    fn duration_yr(&self) -> f64;
+
+    /// What does not go together, in one line with what helps.
+    fn check(&self, _grid: &Grid) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// What a person should know of it before it runs, a line each.
+    fn remarks(&self, _grid: &Grid) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The solver.
+    fn solver(&self, bed: &Bed, world: &World, key: Key) -> Result<Self::Solver, ProcessError>;
+
+    /// Writes the layers that it shows besides the ground.
+    fn show(&self, _solver: &Self::Solver, _bed: &Bed, _world: &mut World) {}
+}
+
+/// What to say where cells are not of the size that a stage is made for, m.
+pub(super) fn cell_size(grid: &Grid, least_m: f64, most_m: f64) -> Option<String> {
+    let cell_m = grid.cell_m;
+    let fits = (least_m..=most_m).contains(&cell_m);
+    (!fits).then(|| {
+        format!(
+            "it is made for cells of {least_m} to {most_m} m; these are {cell_m:.3} m wide, so take it as a picture"
+        )
+    })
+}
+
+/// How the clocks of water and land go.
+pub(super) fn clocks(water_h: f64, bed_yr: f64, factor: f64) -> String {
+    let days = bed_yr * 365.25;
+    let bed = if bed_yr >= 1.0 { format!("{bed_yr:.1} years") } else { format!("{days:.1} days") };
+    format!("{water_h} h of water stand for {bed} of land (morphological_factor = {factor})")
+}
+
+/// A family at work.
+pub(super) struct Stage<T: FamilyParams> {
+    params: T,
+    placement: Placement,
+    steps: u64,
+    done: u64,
+    run: Option<Run<T::Solver>>,
+    saved: Option<State>,
+}
+
+struct Run<S> {
+    bed: Bed,
+    solver: S,
+    column: Column,
+}
+
+impl<T: FamilyParams> Stage<T> {
+    /// Ready for its first step; `steps` asks for that many.
+    pub(super) fn new(params: T, placement: Placement, steps: Option<u64>) -> Self {
+        Self { params, placement, steps: steps.unwrap_or(T::STEPS).max(1), done: 0, run: None, saved: None }
+    }
+
+    /// The bed as the stage finds it.
+    fn begin(&self, world: &mut World, context: &Context) -> Result<Run<T::Solver>, ProcessError> {
+        let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
+        let bed = bed(world, &self.rates(world, mask), self.params.lock());
+        let solver = self.params.solver(&bed, world, context.key)?;
+        let found_m3 = water_m3(world);
+        for &layer in T::PEAKS {
+            world.remove_layer(layer);
+        }
+        if T::WATER {
+            // What the family has no place for, such as puddles in the sea, is gone before it begins.
+            world.ledger.open(context.stage, Matter::Water, found_m3);
+            self.params.show(&solver, &bed, world);
+            let gone_m3 = found_m3 - water_m3(world);
+            world.ledger.book_out(context.stage, Matter::Water, gone_m3);
+        }
+        Ok(Run { column: Column::new(world.grid), bed, solver })
+    }
+
+    /// Share of every rate by mask and hardness; empty where there is neither.
+    fn rates(&self, world: &World, mask: Option<Field<f32>>) -> Vec<f32> {
+        let soft = world.layer(Layer::Hardness).map(|hardness| hardness.map(|h| (1.0 - h).clamp(0.0, 1.0)).data);
+        match (mask, soft) {
+            (None, None) => Vec::new(),
+            (Some(mask), None) => mask.data,
+            (None, Some(soft)) => soft,
+            (Some(mask), Some(soft)) => mask.data.iter().zip(&soft).map(|(m, s)| m * s).collect(),
+        }
+    }
+
+    /// A run from its saved state.
+    fn resume(&self, state: &State, world: &World, context: &Context) -> Option<Run<T::Solver>> {
+        let cells = world.grid.cells();
+        let field = |name: &str| {
+            let found = state.fields.iter().find(|(saved, _)| saved == name);
+            found.map(|(_, field)| field.data.clone()).filter(|data| data.len() == cells)
+        };
+        let blob = state.blob.get(8..)?;
+        let bed = Bed {
+            grid: world.grid,
+            start: field("start")?,
+            change: field("change")?,
+            rate: field("rate").unwrap_or_default(),
+            sea_m: f32::from_le_bytes(blob.get(..4)?.try_into().ok()?),
+            locked: self.params.lock() == Lock::Coast,
+        };
+        let mut solver = self.params.solver(&bed, world, context.key).ok()?;
+        solver.restore(&|name| field(&own(name)), blob.get(4..)?)?;
+        let column = Column::restored(Field { grid: world.grid, data: field("rest")? });
+        Some(Run { bed, solver, column })
+    }
+
+    /// Writes what has happened since `before` into the world.
+    fn write(
+        &self,
+        run: &mut Run<T::Solver>,
+        world: &mut World,
+        (before, carried_m3): (&[f32], f64),
+        moved: &Moved,
+        stage: &str,
+    ) {
+        let mut raised_m = Vec::new();
+        run.column.read(world, &mut raised_m);
+        let gained = run.bed.change.iter().zip(before).map(|(now, before)| f64::from(*now) - f64::from(*before));
+        let height_m: Vec<f64> = raised_m.iter().zip(gained).map(|(z, gained)| z + gained).collect();
+        // What is on its way has left the ground.
+        let left_m3 = moved.rock_left_m3 + run.solver.carried_m3() - carried_m3;
+        run.column.write(world, &Change { raised_m: &raised_m, height_m: &height_m, lifted_m3: 0.0, left_m3 }, stage);
+        self.params.show(&run.solver, &run.bed, world);
+        if T::WATER {
+            world.ledger.book_in(stage, Matter::Water, moved.water_in_m3);
+            world.ledger.book_out(stage, Matter::Water, moved.water_left_m3);
+            let stands_m3 = water_m3(world);
+            world.ledger.close(stage, Matter::Water, stands_m3);
+        }
+    }
+}
+
+/// What a family's field is saved as: apart from the stage's own.
+fn own(name: &str) -> String {
+    format!("family_{name}")
+}
+
+/// The ground of a world, its heights above the middle of the range so that single precision serves it best.
+fn bed(world: &World, rate: &[f32], lock: Lock) -> Bed {
+    let height = world.height();
+    let (low, high) = height.range().unwrap_or((0.0, 0.0));
+    // A whole number of metres, so that taking it away is exact for all but the highest ground.
+    let datum = (0.5 * (f64::from(low) + f64::from(high))).round();
+    Bed {
+        grid: world.grid,
+        start: height.data.iter().map(|&z| (f64::from(z) - datum) as f32).collect(),
+        change: vec![0.0; height.data.len()],
+        rate: rate.to_vec(),
+        sea_m: (world.sea_level_m - datum) as f32,
+        locked: lock == Lock::Coast,
+    }
+}
+
+/// Raises a layer to these values wherever they are greater.
+pub(super) fn peak(world: &mut World, layer: Layer, values: &[f32]) {
+    for (most, &now) in world.layer_mut(layer).data.iter_mut().zip(values) {
+        *most = most.max(now);
+    }
+}
+
+/// Water that stands on the land, m³.
+fn water_m3(world: &World) -> f64 {
+    world.layer(Layer::Water).map_or(0.0, |water| sum_f64(&water.data)) * world.grid.cell_area_m2()
+}
+
+impl<T: FamilyParams> Process for Stage<T> {
+    fn reads(&self) -> &'static [Layer] {
+        &[Layer::Bedrock]
+    }
+
+    fn writes(&self) -> &'static [Layer] {
+        T::WRITES
+    }
+
+    fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
+        self.params.check(grid).map_err(ProcessError::Unfit)
+    }
+
+    fn remarks(&self, grid: &Grid) -> Vec<String> {
+        self.params.remarks(grid)
+    }
+
+    fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
+        context.check()?;
+        let mut run = match (self.run.take(), &self.saved) {
+            (Some(run), _) => run,
+            (None, Some(state)) => self
+                .resume(state, world, context)
+                .ok_or_else(|| ProcessError::Failed("the saved state of this stage is broken".to_owned()))?,
+            (None, None) => self.begin(world, context)?,
+        };
+        self.saved = None;
+        let part = Part { step: self.done, steps: self.steps };
+        let (before, carried_m3) = (run.bed.change.clone(), run.solver.carried_m3());
+        let mut moved = run.solver.advance(&mut run.bed, part);
+        if part.step + 1 >= part.steps {
+            moved += run.solver.settle(&mut run.bed);
+        }
+        self.write(&mut run, world, (&before, carried_m3), &moved, context.stage);
+        self.run = Some(run);
+        self.done += 1;
+        let [from, to] = part.of(self.params.duration_yr());
+        Ok(Step { done: self.done as f64 / self.steps as f64, elapsed_yr: to - from })
+    }
+
+    fn save(&self) -> State {
+        let Some(run) = &self.run else {
+            return self
+                .saved
+                .clone()
+                .unwrap_or_else(|| State { fields: Vec::new(), blob: self.done.to_le_bytes().to_vec() });
+        };
+        let Saved { fields, blob } = run.solver.save();
+        let lay = |name: &str, data: &[f32]| (name.to_owned(), Field { grid: run.bed.grid, data: data.to_vec() });
+        let mut all = vec![
+            lay("start", &run.bed.start),
+            lay("change", &run.bed.change),
+            ("rest".to_owned(), run.column.rest().clone()),
+        ];
+        if !run.bed.rate.is_empty() {
+            all.push(lay("rate", &run.bed.rate));
+        }
+        all.extend(fields.iter().map(|(name, data)| lay(&own(name), data)));
+        let blob = [&self.done.to_le_bytes()[..], &run.bed.sea_m.to_le_bytes(), &blob].concat();
+        State { fields: all, blob }
+    }
+
+    fn restore(&mut self, state: State, _context: &Context) -> Result<(), ProcessError> {
+        let done = state.blob.get(..8).and_then(|bytes| bytes.try_into().ok()).map(u64::from_le_bytes);
+        self.done = done.ok_or_else(|| ProcessError::Failed("the saved state of this stage is broken".to_owned()))?;
+        self.saved = (!state.fields.is_empty()).then_some(state);
+        Ok(())
+    }
+}

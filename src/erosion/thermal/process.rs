@@ -1,0 +1,54 @@
+//! The stage `thermal`.
+
+use super::{Thermal, ThermalParams};
+use crate::{
+    erosion::{
+        bed::Bed,
+        stage::{FamilyParams, Lock, Stage},
+    },
+    grid::Grid,
+    noise::Key,
+    process::{Placement, Process, ProcessError},
+    world::{Layer, World},
+};
+
+/// Passes beyond which a run would take days.
+const MOST_PASSES: f64 = 1e6;
+
+impl ThermalParams {
+    /// The stage as a process; `steps` asks for that many.
+    pub fn process(self, placement: Placement, steps: Option<u64>) -> Box<dyn Process> {
+        Box::new(Stage::new(self, placement, steps))
+    }
+}
+
+impl FamilyParams for ThermalParams {
+    type Solver = Thermal;
+    const WRITES: &'static [Layer] = &[Layer::Bedrock, Layer::Lava, Layer::Sediment, Layer::Wear, Layer::Deposit];
+    const WATER: bool = false;
+    const STEPS: u64 = 50;
+
+    fn lock(&self) -> Lock {
+        self.lock
+    }
+
+    fn duration_yr(&self) -> f64 {
+        self.duration_yr
+    }
+
+    fn check(&self, _grid: &Grid) -> Result<(), String> {
+        let passes = self.rate_per_yr * self.duration_yr / self.most();
+        if passes > MOST_PASSES {
+            return Err(format!(
+                "{passes:.1e} passes over the map would take days; lower duration_yr or rate_per_yr (their product may be {:.1e})",
+                MOST_PASSES * self.most()
+            ));
+        }
+        Ok(())
+    }
+
+    fn solver(&self, bed: &Bed, world: &World, _key: Key) -> Result<Thermal, ProcessError> {
+        let loose = world.layer(Layer::Sediment).map_or_else(|| vec![0.0; bed.start.len()], |s| s.data.clone());
+        Ok(Thermal::new(self.clone(), bed, loose))
+    }
+}
