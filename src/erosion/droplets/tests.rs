@@ -281,6 +281,7 @@ proptest! {
         let mut bed = Bed { grid, start, change: vec![0.0; grid.cells()], rate: Vec::new(), sea_m: base as f32 + 1.0, locked };
         let (path, radius, turning, capacity, least_slope, drying, drag) = rates;
         let params = DropletsParams {
+            lock: crate::erosion::Lock::None,
             duration_yr: 10f64.powf(logs.0), rain_mm_per_yr: 1000.0, droplets_per_cell: 10f64.powf(logs.1), path_m: path * grid.cell_m,
             radius_m: radius * grid.cell_m, turning_m: turning, capacity, least_slope, erosion_m: 10f64.powf(logs.2),
             deposition_m: 10f64.powf(logs.3), drying_per_km: drying, gravity_m_per_s2: 9.81, drag_per_m: drag,

@@ -293,6 +293,7 @@ proptest! {
         let mut bed = Bed { grid, start, change: vec![0.0; grid.cells()], rate: Vec::new(), sea_m: base as f32 + 1.0, locked };
         let (rain, flow, drying, dissolving, capacity, flat) = rates;
         let params = HydraulicCellsParams {
+            lock: crate::erosion::Lock::None,
             duration_h: 40.0 * grid.cell_m / (3600.0 * flow), morphological_factor: 10f64.powf(factor_log), rain_mm_per_h: rain,
             flow_m_per_s: flow, drying_per_h: drying, dissolving_per_h: dissolving, capacity, flat_capacity: flat, steepness,
         };

@@ -7,7 +7,7 @@
 //! `q* = q + Δt·g·d_f·ΔH/l`, then `q* = q + a·|q|q` with `a = Δt·g·n²/d_f^(7/3)` solved for `q`: Manning's friction, all
 //! implicit, so that thin films don't swing. A cell's outflow is cut to what it has, by one factor for all its faces; then
 //! `d += Δt/l·Σq`. Waves run at `√(g·d)`; steps are 0.9 of `l/(√2·√(g·d_max))` and no water crosses more than a cell.
-//! `flux = "mei"` keeps two one-sided fluxes a face and takes steps of `0.9·l/2c`. `momentum` adds what [`momentum`] says.
+//! `flux = "mei"` keeps two one-sided fluxes a face and takes steps of `0.9·l/2c`. `momentum` adds what `momentum.rs` says.
 //!
 //! **Sediment.** `s`, in metres of rock a cell, rides on the water's fluxes from upwind: what leaves one cell comes to the
 //! next, to the last bit of the product. Then, with `Δt`-shares at most 1, water takes up or drops
@@ -21,7 +21,7 @@
 //! `Σ b + M·Σ s` is kept, and rock that is on its way, or leaves, is counted `M` times. It is sound while a bed changes
 //! little in the time that water takes to run by: with a capacity of a few per cent, up to about 100.
 //!
-//! **Slippage.** See [`slip`]: fluxes to eight neighbours above the talus angle, which is lower where the ground is wet.
+//! **Slippage.** Fluxes to eight neighbours above the talus angle, which is lower where the ground is wet.
 //!
 //! **Rims and sea.** Over an open rim water goes as down an endless slope of the fall that it comes with, by Manning, at most
 //! at its waves' speed; it and its sediment are counted. The bed of a rim is never dug below its neighbours. In the sea the

@@ -55,7 +55,8 @@ pub(super) fn slide_coarse(ground: &Ground, slide: &Slide, levels: u32) -> Vec<f
     let fine = ground.grid;
     let none = vec![0.0; fine.cells()];
     // A raster of an odd side has no half.
-    if levels == 0 || fine.width % 2 != 0 || fine.height % 2 != 0 || fine.width.min(fine.height) < 8 {
+    if levels == 0 || !fine.width.is_multiple_of(2) || !fine.height.is_multiple_of(2) || fine.width.min(fine.height) < 8
+    {
         return none;
     }
     let grid = Grid { width: fine.width / 2, height: fine.height / 2, cell_m: 2.0 * fine.cell_m, edges: fine.edges };
@@ -99,7 +100,7 @@ fn around(grid: &Grid, values: &[f32]) -> Vec<f32> {
 /// what lies on it.
 fn spread(fine: &Grid, change: &Field<f32>) -> Vec<f32> {
     let mut out = vec![0.0; fine.cells()];
-    let side = |at: usize| if at % 2 == 0 { -1 } else { 1 };
+    let side = |at: usize| if at.is_multiple_of(2) { -1 } else { 1 };
     debug_assert!(fine.edges == change.grid.edges || fine.edges != Edges::Wrap);
     map_cells(&mut out, fine.width, |x, y| {
         let grid = &change.grid;

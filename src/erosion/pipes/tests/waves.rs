@@ -101,7 +101,7 @@ fn the_limit_of_a_step_is_where_it_is_said_to_be() {
         let mut pipes = Pipes::new(still(), &bed, None);
         pipes.courant = courant;
         // The shortest wave in both directions: the first to grow.
-        let check = |i: usize| if (i % 16 + i / 16) % 2 == 0 { 1e-3 } else { -1e-3 };
+        let check = |i: usize| if (i % 16 + i / 16).is_multiple_of(2) { 1e-3 } else { -1e-3 };
         pipes.depth = (0..256).map(|i| 2.0 + check(i)).collect();
         pipes.look();
         let dt = pipes.limit(false);
