@@ -1,5 +1,5 @@
 //! Draws `docs/gallery/`: every preset, the plates of `collision` in motion, what else its world knows, its waters, a
-//! continent and a valley in it, and the report that sets the default world beside Earth.
+//! continent and a valley in it, one start eroded five ways, and the report that sets the default world beside Earth.
 //!
 //! `cargo run --release --example gallery` draws it all; names of pictures after `--` draw only those.
 
@@ -56,6 +56,9 @@ fn main() -> Outcome<()> {
     }
     if wants("three-scales") {
         page.draw("three-scales", &three_scales()?)?;
+    }
+    if wants("five-ways") {
+        page.draw("five-ways", &five_ways()?)?;
     }
     if wants("report") {
         page.report()?;
@@ -126,6 +129,12 @@ impl Page {
                 "From continent to valley",
                 "Preset `continent-to-valley`: 1,000 km, then 64 km of it, then 5 km, each carved anew by the rivers that                  come in over its rim.",
             ),
+            (
+                "five-ways",
+                "One start, eroded five ways",
+                "Fractal hills a kilometre across, and what each family of erosion makes of them by its defaults; in \
+                 the second row what it wore off. [Erosion](../erosion.md) says which is for what.",
+            ),
         ];
         for (name, title, caption) in sheets {
             writeln!(text, "## {title}\n\n![{title}]({name}.jpg)\n\n{caption}\n")?;
@@ -157,7 +166,9 @@ fn collision() -> Outcome<Plan> {
 }
 
 fn preset_picture(preset: &Preset) -> Outcome<RgbImage> {
-    let plan = plan(preset, SIDE)?;
+    // Particles suit the cells that they were chosen for.
+    let own = Plan::new(&preset.source(), &Overrides::default())?.world.grid();
+    let plan = plan(preset, SIDE.min(own.width))?;
     let world = grow(&plan, &mut [])?;
     let options = Options { title: Some(plan.title.clone()), max_px: SIDE, ..Options::default() };
     Ok(relief::map(&world, &View::Relief, &options)?)
@@ -238,6 +249,39 @@ fn three_scales() -> Outcome<RgbImage> {
     });
     let panels = panels.collect::<Outcome<Vec<_>>>()?;
     Ok(relief::contact_sheet(&panels, panels.len()))
+}
+
+/// The same hills as they were and after each family, and below what was worn off.
+fn five_ways() -> Outcome<RgbImage> {
+    const HILLS: &str = "[world]\nseed = 4\nextent_km = 1.0\nsea_level_m = -1000.0\n[[stage]]\nkind = 'fbm'\n\
+                         height_m = 160.0\nbase_m = 300.0\nwavelength_km = 0.6\nhurst = 0.9\n";
+    const WAYS: [(&str, &str); 6] = [
+        ("the start", ""),
+        ("thermal", "rock_angle_deg = 35.0\n"),
+        ("hydraulic_cells", ""),
+        ("pipes", "duration_h = 1.0\n"),
+        ("rain_particles", "duration_min = 2.0\n"),
+        ("droplets", ""),
+    ];
+    let options = Options::bare(PANEL);
+    let (mut above, mut below) = (Vec::new(), Vec::new());
+    for (name, params) in WAYS {
+        let stage = if name.contains(' ') { String::new() } else { format!("[[stage]]\nkind = '{name}'\n{params}") };
+        let source = recipe::Source {
+            name: name.to_owned(),
+            file: "five-ways".to_owned(),
+            folder: PathBuf::new(),
+            text: format!("{HILLS}{stage}"),
+        };
+        let overrides = Overrides { size: Some("256".to_owned()), ..Overrides::default() };
+        let world = grow(&Plan::new(&source, &overrides)?, &mut [])?;
+        above.push((name.to_owned(), relief::map(&world, &View::Relief, &options)?));
+        let seen = if stage.is_empty() { View::Layer(Layer::Slope) } else { View::Layer(Layer::Wear) };
+        let label = if stage.is_empty() { "slope" } else { "wear" };
+        below.push((label.to_owned(), relief::map(&world, &seen, &options)?));
+    }
+    above.append(&mut below);
+    Ok(relief::contact_sheet(&above, WAYS.len()))
 }
 
 fn layers() -> Outcome<RgbImage> {

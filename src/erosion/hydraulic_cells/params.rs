@@ -9,7 +9,7 @@ use crate::grid::Grid;
 use super::passes::Law;
 
 /// More iterations than anyone waits for.
-const MOST_ITERATIONS: f64 = 2e6;
+const MOST_ITERATIONS: f64 = 2e5;
 
 /// How a slope resists being dissolved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

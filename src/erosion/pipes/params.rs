@@ -5,6 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::{erosion::stage::Lock, grid::Grid};
 
+/// More steps than anyone waits for.
+const MOST_STEPS: f64 = 1e6;
+/// Gravity, m/s².
+const GRAVITY: f64 = 9.81;
+
 /// How fluxes are kept at the faces of cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -191,6 +196,18 @@ impl PipesParams {
             return Err(format!(
                 "deep_m = {} is less than shallow_m = {}; raise deep_m or lower shallow_m",
                 self.deep_m, self.shallow_m
+            ));
+        }
+        // Steps in water of a metre; lakes need more.
+        let step_s = 0.64 * grid.cell_m / GRAVITY.sqrt();
+        let steps = 3600.0 * self.duration_h / step_s;
+        if steps > MOST_STEPS {
+            return Err(format!(
+                "{} h on cells of {} m are {steps:.1e} steps of water; lower duration_h to {:.3} and raise \
+                 morphological_factor instead",
+                self.duration_h,
+                grid.cell_m,
+                self.duration_h * MOST_STEPS / steps
             ));
         }
         if self.rain_radius_km > 0.0 {

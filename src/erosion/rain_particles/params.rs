@@ -22,7 +22,7 @@ const DROPS: f64 = 9.2;
 /// Monaghan's α of 0.1 over 2(D + 2).
 pub(super) const NUMERIC: f64 = 0.01;
 /// Most sub-steps that a run may need.
-const MOST_SUB_STEPS: f64 = 2e6;
+const MOST_SUB_STEPS: f64 = 3e5;
 /// Cells up to which a particle is a puddle, m.
 const MADE_FOR_M: f64 = 5.0;
 
