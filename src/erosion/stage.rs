@@ -170,10 +170,20 @@ impl<T: FamilyParams> Stage<T> {
         let mut raised_m = Vec::new();
         run.column.read(world, &mut raised_m);
         let gained = run.bed.change.iter().zip(before).map(|(now, before)| f64::from(*now) - f64::from(*before));
-        let height_m: Vec<f64> = raised_m.iter().zip(gained).map(|(z, gained)| z + gained).collect();
+        let mut laid_m = 0.0;
+        let height_m: Vec<f64> = (raised_m.iter().zip(gained))
+            .map(|(z, gained)| {
+                laid_m += gained.max(0.0);
+                z + gained
+            })
+            .collect();
         // What is on its way has left the ground.
         let left_m3 = moved.rock_left_m3 + run.solver.carried_m3() - carried_m3;
         run.column.write(world, &Change { raised_m: &raised_m, height_m: &height_m, lifted_m3: 0.0, left_m3 }, stage);
+        // What came from one place and lies in another was moved: it left, and came in again.
+        let laid_m3 = laid_m * world.grid.cell_area_m2();
+        world.ledger.book_in(stage, Matter::Rock, laid_m3);
+        world.ledger.book_out(stage, Matter::Rock, laid_m3);
         self.params.show(&run.solver, &run.bed, world);
         if T::WATER {
             world.ledger.book_in(stage, Matter::Water, moved.water_in_m3);

@@ -14,8 +14,9 @@ pub fn drop(rules: &Rules, line: &Line, bed: &mut [f32], load: &mut [f32]) {
         if line.land[i + 1] == 0.0 {
             let free = if rules.locked { 0.25 * room(rules, z) } else { hi(rules.sea_m - z, 0.0) };
             let laid = lo(rules.factor * *load, lo(free, STRIDE * rules.cell_m)) * line.rate[i + 1];
-            *bed += laid;
-            *load = hi(*load - laid / rules.factor, 0.0);
+            let left = hi(*load - laid / rules.factor, 0.0);
+            *bed += rules.factor * (*load - left);
+            *load = left;
         }
     }
 }

@@ -68,7 +68,8 @@ pub fn exchange(rules: &Rules, beat: &Beat, before: &Before, after: &mut After, 
         let d1 = depth[i];
         let came = beat.pace * ((qw[i] - qe[i]) + (qn[i] - qs[i]));
         let d2 = hi(d1 + came, 0.0);
-        let carried = hi(load[i] + beat.pace * ((sw[i] - se[i]) + (sn[i] - ss[i])), 0.0);
+        let brought = beat.pace * ((sw[i] - se[i]) + (sn[i] - ss[i]));
+        let carried = hi(load[i] + brought, 0.0);
         let per_depth = inverse(hi(0.5 * (d1 + d2), STILL_M));
         // Squares before the mean: where a stream turns, each face has half of it, and it is as fast as where it is straight.
         let through2 = (qw[i] * qw[i] + qe[i] * qe[i]) + (qn[i] * qn[i] + qs[i] * qs[i]);
@@ -91,7 +92,8 @@ pub fn exchange(rules: &Rules, beat: &Beat, before: &Before, after: &mut After, 
         let worn = hi(lo(rules.factor * (share * act[i] * lack), dig), -fill);
         let worn = hi(worn, -rules.factor * carried);
         new_load[i] = hi(carried + worn * per_factor, 0.0);
-        bed[i] = -worn;
+        // Of the bed comes what the load really gained besides what fluxes brought, rounding and all.
+        bed[i] = -rules.factor * ((new_load[i] - load[i]) - brought);
         let left = hi(d2 - beat.dry_m, 0.0);
         new_depth[i] = left;
         dried[i] = d2 - left;
