@@ -21,7 +21,7 @@ pub struct ThermalParams {
     #[schemars(range(min = 0.0, max = 1000.0), extend("x-unit" = "1/yr", "x-effect" = "the same in less time"))]
     pub rate_per_yr: f64,
     /// How ground slides.
-    #[schemars(extend("x-effect" = "spread: screes without ribs; flux: twice as fast, but screes fall straight down the raster; cells: Olsen's automaton"))]
+    #[schemars(extend("x-effect" = "spread: screes without ribs; flux: faster, but screes fall straight down the raster; cells: Olsen's automaton"))]
     pub method: ThermalMethod,
     /// Steepest slope on which loose ground rests: sand 30 to 35, scree 33 to 38, gravel 35 to 45.
     #[schemars(range(min = 1.0, max = 85.0), extend("x-unit" = "deg", "x-effect" = "steeper, shorter screes"))]
