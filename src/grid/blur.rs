@@ -1,5 +1,6 @@
 //! Gaussian blur by three extended boxes (Gwosdek et al. 2011): the variance is exact, the cost does not grow with it.
 
+use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::{Edges, Field, transposed};
@@ -41,35 +42,38 @@ impl Boxes {
             for (y, row) in strip.iter_mut().enumerate() {
                 row[..wide].copy_from_slice(&data[y * w + block * STRIP..][..wide]);
             }
-            self.down(strip, other, wrap);
-            self.down(other, strip, wrap);
-            self.down(strip, other, wrap);
+            down(self, strip, other, wrap);
+            down(self, other, strip, wrap);
+            down(self, strip, other, wrap);
             for (i, column) in columns.chunks_exact_mut(h).enumerate() {
                 column.iter_mut().zip(other.iter()).for_each(|(to, row)| *to = row[i]);
             }
         });
         out
     }
+}
 
-    fn down(&self, from: &[[f32; STRIP]], to: &mut [[f32; STRIP]], wrap: bool) {
-        let h = from.len() as isize;
-        let reach = self.radius as isize;
-        let row = |y: isize| {
-            let y = if wrap { y.rem_euclid(h) } else { y.clamp(0, h - 1) };
-            &from[y as usize]
-        };
-        let mut sum = [0.0f64; STRIP];
-        for y in -reach..=reach {
-            sum.iter_mut().zip(row(y)).for_each(|(sum, &v)| *sum += v as f64);
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn down(boxes: &Boxes, from: &[[f32; STRIP]], to: &mut [[f32; STRIP]], wrap: bool) {
+    let h = from.len() as isize;
+    let reach = boxes.radius as isize;
+    let row = |y: isize| {
+        let y = if wrap { y.rem_euclid(h) } else { y.clamp(0, h - 1) };
+        &from[y as usize]
+    };
+    let mut sum = [0.0f64; STRIP];
+    for y in -reach..=reach {
+        for (sum, &v) in sum.iter_mut().zip(row(y)) {
+            *sum += v as f64;
         }
-        for (y, out) in to.iter_mut().enumerate() {
-            let y = y as isize;
-            let (before, first, after) = (row(y - reach - 1), row(y - reach), row(y + reach + 1));
-            for i in 0..STRIP {
-                let after = after[i] as f64;
-                out[i] = ((sum[i] + self.edge * (before[i] as f64 + after)) / self.total) as f32;
-                sum[i] += after - first[i] as f64;
-            }
+    }
+    for (y, out) in to.iter_mut().enumerate() {
+        let y = y as isize;
+        let (before, first, after) = (row(y - reach - 1), row(y - reach), row(y + reach + 1));
+        for i in 0..STRIP {
+            let after = after[i] as f64;
+            out[i] = ((sum[i] + boxes.edge * (before[i] as f64 + after)) / boxes.total) as f32;
+            sum[i] += after - first[i] as f64;
         }
     }
 }

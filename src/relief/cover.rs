@@ -68,16 +68,28 @@ impl Tints {
         let over_m = (height_m - sea_m).max(0.0);
         let t = climate.temperature_degc;
         let warmer = BORDERS_DEGC.map(|border| smooth(border - HALF_K, border + HALF_K, t));
-        let mut wet = self.wet[0].at(over_m);
-        for (ramp, share) in self.wet[1..].iter().zip(warmer) {
-            if share > 0.0 {
-                wet = mix(wet, ramp.at(over_m), share);
+        // What has no share in the colour is not looked up.
+        let wet = || {
+            let whole = warmer.iter().rposition(|&share| share >= 1.0).map_or(0, |border| border + 1);
+            let mut wet = self.wet[whole].at(over_m);
+            for (ramp, &share) in self.wet[whole + 1..].iter().zip(&warmer[whole..]) {
+                if share > 0.0 {
+                    wet = mix(wet, ramp.at(over_m), share);
+                }
             }
-        }
+            wet
+        };
         // A cold desert is rather grey than ochre.
-        let dry = mix(mix(self.dry.at(over_m), self.wet[0].at(over_m), 0.7), self.dry.at(over_m), warmer[0]);
-        let index = climate.rain_mm / (t.max(-6.0) + 10.0);
-        let ground = mix(dry, wet, smooth(WETNESS[0], WETNESS[1], index));
+        let dry = || {
+            let own = self.dry.at(over_m);
+            if warmer[0] >= 1.0 { own } else { mix(mix(own, self.wet[0].at(over_m), 0.7), own, warmer[0]) }
+        };
+        let wetness = smooth(WETNESS[0], WETNESS[1], climate.rain_mm / (t.max(-6.0) + 10.0));
+        let ground = match wetness {
+            ..=0.0 => dry(),
+            1.0.. => wet(),
+            share => mix(dry(), wet(), share),
+        };
         mix(ground, self.snow, smooth(SNOW_M[0], SNOW_M[1], height_m - climate.snow_line_m))
     }
 }

@@ -137,7 +137,7 @@ fn over_ground(
     options: &Options,
 ) -> Vec<Rgb> {
     let sea = scene.sea_m as f32;
-    let tone = shade(frame, heights, |h| h > sea || scene.range_m[1] <= scene.sea_m, options.exaggeration);
+    let tone = shade(heights, |h| h > sea || scene.range_m[1] <= scene.sea_m, options.exaggeration);
     let coast = Coast::new(heights, sea);
     let ink = hex(0x202830);
     let half = 0.35 * frame.unit();

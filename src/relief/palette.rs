@@ -53,8 +53,8 @@ impl Encoder {
     /// Where the byte of a linear value stands.
     #[inline(always)]
     pub fn place(value: f32) -> u16 {
-        // By way of a signed number, which processors turn many of at once.
-        (value.clamp(0.0, 1.0) * (Self::SIZE - 1) as f32 + 0.5) as i32 as u16
+        // Also where there is no number.
+        nearest(value.max(0.0).min(1.0) * (Self::SIZE - 1) as f32) as u16
     }
 
     /// The byte at a place.
@@ -62,6 +62,14 @@ impl Encoder {
     pub fn byte(&self, place: u16) -> u8 {
         self.table[usize::from(place)]
     }
+}
+
+/// The whole number nearest to one from 0 to 65,535, in a way of which processors take many at once: so far from zero a
+/// float has no room for fractions.
+#[inline(always)]
+pub fn nearest(value: f32) -> u32 {
+    const WHOLE: f32 = 8_388_608.0;
+    (value + WHOLE).to_bits() - WHOLE.to_bits()
 }
 
 fn oklab(rgb: Rgb) -> [f64; 3] {

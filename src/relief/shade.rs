@@ -7,8 +7,10 @@
 //! exaggerated until the land's typical slope is a good one to light, then bent so that plains show their form and the
 //! steepest slopes keep detail.
 
-use super::frame::Frame;
-use crate::grid::{Field, blur, sum_rows};
+use multiversion::multiversion;
+use rayon::prelude::*;
+
+use crate::grid::{Field, blur, for_each_row, sum_rows};
 
 /// Compass azimuth and altitude in degrees, and weight.
 const LIGHTS: [(f64, f64, f64); 5] =
@@ -23,41 +25,69 @@ const LEVEL: f32 = 0.04;
 /// Flat worlds stay flat: no more than this.
 const MOST: f64 = 90.0;
 /// Blur of the three copies, in thousandths of the picture's side, and their share in the slope.
-pub const SCALES: [(f64, f64); 3] = [(0.0, 0.70), (2.5, 0.50), (10.0, 0.60)];
+const SCALES: [(f64, f64); 3] = [(0.0, 0.70), (2.5, 0.50), (10.0, 0.60)];
 /// Least blur of each, pixels: single cells are not terrain.
 const LEAST_PX: [f64; 3] = [0.55, 1.4, 3.0];
 
 /// How bright each pixel is: 0 as flat ground, −1 black shadow, 1 full light.
-pub fn shade(
-    frame: &Frame,
-    z: &Field<f32>,
-    counts: impl Fn(f32) -> bool + Sync,
-    exaggeration: Option<f64>,
-) -> Field<f32> {
-    let copies = [0, 1, 2].map(|i| blur(z, sigma_px(z, i)));
-    let factor = exaggeration.unwrap_or_else(|| typical_exaggeration(&copies[0], counts)) as f32;
+pub fn shade(z: &Field<f32>, counts: impl Fn(f32) -> bool + Sync, exaggeration: Option<f64>) -> Field<f32> {
+    let width = z.grid.width;
+    let mut form = blur(z, sigma_px(z, 0));
+    let factor = exaggeration.unwrap_or_else(|| typical_exaggeration(&form, counts)) as f32;
+    // What slopes are taken of: the copies by their shares, one after the other, so that only one of them takes room.
+    let [share, smoother, smoothest] = SCALES.map(|(_, share)| share as f32);
+    for_each_row(&mut form.data, width, |_, row| row.iter_mut().for_each(|form| *form *= share));
+    let mut add = |copy: &Field<f32>, share: f32| {
+        for_each_row(&mut form.data, width, |y, row| {
+            row.iter_mut().zip(copy.row(y)).for_each(|(form, v)| *form += v * share);
+        });
+    };
+    add(&blur(z, sigma_px(z, 1)), smoother);
+    let around = blur(z, sigma_px(z, 2));
+    add(&around, smoothest);
     let lamps = Lamps::new();
     // Height over the surroundings, in units of a slope of one across the blur.
-    let per_m = factor / (sigma_px(z, 2) * frame.grid.cell_m) as f32;
-    Field::from_fn(z.grid, |x, y| {
-        let mut g = [0.0f32; 2];
-        for (copy, (_, share)) in copies.iter().zip(SCALES) {
-            let [gx, gy] = slope(copy, x, y);
-            g = [g[0] + gx * share as f32, g[1] + gy * share as f32];
+    let over_per_m = factor / (sigma_px(z, 2) * z.grid.cell_m) as f32;
+    let slope_per_m = (0.5 / z.grid.cell_m) as f32 * factor;
+    let mut tones = around;
+    let room = || [vec![0.0; width], vec![0.0; width]];
+    tones.data.par_chunks_exact_mut(width).enumerate().for_each_init(room, |[across, down], (y, tones)| {
+        for (tone, z) in tones.iter_mut().zip(z.row(y)) {
+            *tone = (z - *tone) * over_per_m;
         }
-        lamps.tone(g.map(|v| v * factor), (z.at(x, y) - copies[2].at(x, y)) * per_m)
-    })
+        slopes(&form, y, slope_per_m, across, down);
+        lamps.shine(across, down, tones);
+    });
+    tones
+}
+
+/// Slopes of a row, times a factor: central differences, half at the rim.
+fn slopes(form: &Field<f32>, y: usize, per_m: f32, across: &mut [f32], down: &mut [f32]) {
+    let grid = &form.grid;
+    let (here, last) = (form.row(y), grid.width - 1);
+    if last > 1 {
+        for ((slope, west), east) in across[1..last].iter_mut().zip(here).zip(&here[2..]) {
+            *slope = (east - west) * per_m;
+        }
+    }
+    for x in [0, last] {
+        across[x] = (here[grid.column(x, 1)] - here[grid.column(x, -1)]) * per_m;
+    }
+    let (north, south) = (form.row(grid.row(y, -1)), form.row(grid.row(y, 1)));
+    for ((slope, north), south) in down.iter_mut().zip(north).zip(south) {
+        *slope = (south - north) * per_m;
+    }
 }
 
 /// The lights, ready to shine.
-pub struct Lamps {
+struct Lamps {
     lights: [[f32; 3]; LIGHTS.len()],
     flat: f32,
 }
 
 impl Lamps {
     /// Directions times weights.
-    pub fn new() -> Self {
+    fn new() -> Self {
         let lights = LIGHTS.map(|(azimuth, altitude, weight)| {
             let (a, h) = (f64::to_radians(azimuth), f64::to_radians(altitude));
             [libm::sin(a) * libm::cos(h), -libm::cos(a) * libm::cos(h), libm::sin(h)].map(|v| (v * weight) as f32)
@@ -65,9 +95,14 @@ impl Lamps {
         Self { lights, flat: lights.iter().map(|l| l[2]).sum() }
     }
 
+    /// How bright the places of a row are, by their exaggerated slopes; `tones` bring their heights over the surroundings.
+    fn shine(&self, across: &[f32], down: &[f32], tones: &mut [f32]) {
+        shine(self, across, down, tones);
+    }
+
     /// How bright a place is, by its exaggerated slope and its height over the surroundings.
     #[inline(always)]
-    pub fn tone(&self, [gx, gy]: [f32; 2], over: f32) -> f32 {
+    fn tone(&self, [gx, gy]: [f32; 2], over: f32) -> f32 {
         let flat = self.flat;
         let bend = bend(gx * gx + gy * gy);
         let (gx, gy) = (gx * bend, gy * bend);
@@ -85,9 +120,16 @@ pub fn exaggeration(z: &Field<f32>, counts: impl Fn(f32) -> bool + Sync) -> f64 
 }
 
 /// Blur of one of the copies.
-pub fn sigma_px(z: &Field<f32>, copy: usize) -> f64 {
+fn sigma_px(z: &Field<f32>, copy: usize) -> f64 {
     let side = z.grid.width.max(z.grid.height) as f64;
     (SCALES[copy].0 * side / 1000.0).max(LEAST_PX[copy])
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn shine(lamps: &Lamps, across: &[f32], down: &[f32], tones: &mut [f32]) {
+    for ((tone, &gx), &gy) in tones.iter_mut().zip(across).zip(down) {
+        *tone = lamps.tone([gx, gy], *tone);
+    }
 }
 
 /// What a slope is multiplied with before it is lit, by its square.
@@ -106,7 +148,7 @@ fn slope(z: &Field<f32>, x: usize, y: usize) -> [f32; 2] {
 }
 
 /// The factor that gives the pixels that count a typical slope.
-pub fn typical_exaggeration(z: &Field<f32>, counts: impl Fn(f32) -> bool + Sync) -> f64 {
+fn typical_exaggeration(z: &Field<f32>, counts: impl Fn(f32) -> bool + Sync) -> f64 {
     let counts = &counts;
     let rows = z.grid.height;
     let land = |y: usize| (0..z.grid.width).filter(move |&x| counts(z.at(x, y)));
@@ -122,30 +164,24 @@ mod tests {
     use super::*;
     use crate::grid::{Edges, Grid};
 
-    fn cone(cell_m: f64) -> (Frame, Field<f32>) {
+    fn cone(cell_m: f64) -> Field<f32> {
         let grid = Grid { width: 128, height: 128, cell_m, edges: Edges::Open };
-        let frame = Frame::new(grid, 128, 0);
-        let z = Field::from_fn(grid, |x, y| {
+        Field::from_fn(grid, |x, y| {
             let r = ((x as f64 - 63.5).powi(2) + (y as f64 - 63.5).powi(2)).sqrt();
             ((50.0 - r).max(0.0) * 10.0) as f32
-        });
-        (frame, z)
+        })
     }
 
     #[test]
     fn light_comes_from_the_north_west_and_flat_ground_is_neutral() {
-        let (frame, z) = cone(100.0);
-        let tone = shade(&frame, &z, |h| h > 0.0, None);
+        let tone = shade(&cone(100.0), |h| h > 0.0, None);
         assert!(tone.at(45, 45) > 0.3 && tone.at(82, 82) < -0.3, "{} {}", tone.at(45, 45), tone.at(82, 82));
         assert_eq!(tone.at(1, 1), 0.0);
     }
 
     #[test]
     fn a_hill_and_a_continent_of_the_same_form_look_the_same() {
-        let [hill, continent] = [10.0, 1000.0].map(|cell_m| {
-            let (frame, z) = cone(cell_m);
-            shade(&frame, &z, |h| h > 0.0, None)
-        });
+        let [hill, continent] = [10.0, 1000.0].map(|cell_m| shade(&cone(cell_m), |h| h > 0.0, None));
         // A slope of 1 and one of 0.01: both within what is exaggerated, so equal but for rounding.
         let apart = hill.data.iter().zip(&continent.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         assert!(apart < 1e-3, "{apart}");

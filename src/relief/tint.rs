@@ -111,7 +111,7 @@ pub fn relief(
 ) -> Vec<Rgb> {
     let sea = scene.sea_m as f32;
     let has_land = scene.range_m[1] > scene.sea_m;
-    let tone = shade(frame, heights, |h| h > sea || !has_land, options.exaggeration);
+    let tone = shade(heights, |h| h > sea || !has_land, options.exaggeration);
     let coast = Coast::new(heights, sea);
     let (unit, brush) = (frame.unit(), Brush::new(frame.unit()));
     let mut pixels = vec![[0.0; 3]; frame.grid.cells()];

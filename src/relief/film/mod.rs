@@ -5,8 +5,8 @@
 //! where a process shows itself seldom; plates, classes and other names, which have no between, change half way. A shot
 //! keeps nothing of the world but a few fields of the picture's size, so that memory does not grow with the world.
 //!
-//! A height has the same colour in all pictures. The light follows the land, as on the map: it is exaggerated by what
-//! each shot would choose, and in proportion between two.
+//! A height has the same colour in all pictures. The light follows the land, as on the map: every shot is lit as its own
+//! map would be, and what lies between two goes from one's light to the other's.
 
 mod paint;
 mod resample;
@@ -22,7 +22,6 @@ use super::{
     frame::unit_of,
     layers,
     palette::Encoder,
-    shade::Lamps,
     swatches::Colours,
     tint::{Brush, Scene},
 };
@@ -72,7 +71,6 @@ pub struct Animation {
     sheet: Sheet,
     // What is the same for all pictures, or room that all of them use.
     encoder: Encoder,
-    lamps: Lamps,
     brush: Brush,
     tints: Tints,
     unit: f32,
@@ -107,7 +105,6 @@ impl Animation {
             colours,
             sheet: Sheet::new(options.size, [map_w, map_h], options.title.as_deref(), &legend),
             encoder,
-            lamps: Lamps::new(),
             brush,
             unit: unit_of(&map),
             heights: Field::filled(map, 0.0),

@@ -1,5 +1,6 @@
 //! The passes over a picture's pixels.
 
+use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::{
@@ -62,9 +63,8 @@ impl Ground<'_> {
 
 /// Room for a row's values.
 struct Room {
-    form: [Vec<f32>; 3],
-    around: Vec<f32>,
     tone: Vec<f32>,
+    values: Vec<f32>,
     tints: Vec<u32>,
     /// The land's flat colours, and where the bytes of the lit ones stand.
     flat: [Vec<f32>; 3],
@@ -80,11 +80,7 @@ impl Animation {
         let proportion = |a: f32, b: f32| if share >= 1.0 { b } else { a + (b - a) * share };
         let sea_m = proportion(from.sea_m, to.sea_m);
         self.shore.find(&self.heights, sea_m);
-        let light = Light {
-            form: Between { from: &from.form, to: &to.form, share },
-            around: Between { from: &from.around, to: &to.around, share },
-            factor: proportion(from.exaggeration, to.exaggeration),
-        };
+        let tones = Between { from: &from.tone, to: &to.tone, share };
         // Names change half way; what has an order goes in proportion.
         let nearest = if share < 0.5 { from } else { to };
         let values = match (&from.values, &to.values, &nearest.values) {
@@ -110,9 +106,8 @@ impl Animation {
         let room = || {
             let row = || vec![0.0; map.width];
             Room {
-                form: [row(), row(), row()],
-                around: row(),
                 tone: row(),
+                values: row(),
                 tints: vec![0; map.width],
                 flat: [row(), row(), row()],
                 places: [0; 3].map(|_| vec![0; map.width]),
@@ -121,7 +116,7 @@ impl Animation {
         let rows = picture.par_chunks_exact_mut(this.size[0] * 3).take(map.height).enumerate();
         rows.for_each_init(room, |room, (y, out)| {
             let out = &mut out[..map.width * 3];
-            this.light(&light, y, room);
+            tones.row(y, &mut room.tone);
             match &values {
                 Some(values) => this.layer_row(values, sea_m, y, room, out),
                 None => this.relief_row(sea_m, ground.as_ref(), y, room, out),
@@ -130,36 +125,6 @@ impl Animation {
                 waters.lay::<3>(y, share, out);
             }
         });
-    }
-
-    /// How bright each pixel of a row is, as `shade` finds it.
-    fn light(&self, light: &Light, y: usize, room: &mut Room) {
-        let grid = &self.map;
-        let last = grid.width - 1;
-        for (row, j) in room.form.iter_mut().zip([grid.row(y, -1), y, grid.row(y, 1)]) {
-            light.form.row(j, row);
-        }
-        light.around.row(y, &mut room.around);
-        let per = (0.5 / grid.cell_m) as f32 * light.factor;
-        let over = light.factor / (super::super::shade::sigma_px(&self.heights, 2) * grid.cell_m) as f32;
-        let Room { form: [north, here, south], around, tone, .. } = room;
-        let z = self.heights.row(y);
-        // The rim has its own neighbours; the rest is one plain loop over slices of one length.
-        if last > 1 {
-            let inner = 1..last;
-            let (west, east) = (&here[..last - 1], &here[2..]);
-            let (north, south) = (&north[inner.clone()], &south[inner.clone()]);
-            let (z, around) = (&z[inner.clone()], &around[inner.clone()]);
-            for (i, tone) in tone[inner].iter_mut().enumerate() {
-                let slope = [(east[i] - west[i]) * per, (south[i] - north[i]) * per];
-                *tone = self.lamps.tone(slope, (z[i] - around[i]) * over);
-            }
-        }
-        for x in [0, last] {
-            let (west, east) = (grid.column(x, -1), grid.column(x, 1));
-            let slope = [(here[east] - here[west]) * per, (south[x] - north[x]) * per];
-            tone[x] = self.lamps.tone(slope, (z[x] - around[x]) * over);
-        }
     }
 
     /// A row of the relief: most pixels are looked up by height and light, or by weather a row at a time; those on the
@@ -171,29 +136,24 @@ impl Animation {
         if let Some(ground) = ground {
             ground.row(y, |x| self.scene.land((heights[x] - sea_m).max(0.0)), flat);
             for (c, (places, flat)) in places.iter_mut().zip(flat.iter()).enumerate() {
-                let parts = flat.iter().zip(tone.iter());
-                places.iter_mut().zip(parts).for_each(|(place, (&part, &tone))| {
-                    *place = Encoder::place(lit_part(c, part, tone));
-                });
+                lit_places(c, flat, tone, places);
             }
         }
         let begin = y * self.map.width;
         for (x, pixel) in out.chunks_exact_mut(3).enumerate() {
-            let line_px = self.shore.line_px[begin + x];
             // The scene is over a sea at zero.
-            let height_m = heights[x] - sea_m;
-            let own = ground.filter(|_| height_m > 0.0 || line_px <= 1.0).map(|_| each(|c| flat[c][x]));
+            let (height_m, line_px) = (heights[x] - sea_m, self.shore.line_px[begin + x]);
             if line_px > 1.0 && !self.brush.on_line(line_px) {
-                let colour = if own.is_some() {
-                    each(|c| self.encoder.byte(places[c][x]))
-                } else if self.shore.plain(begin + x) {
-                    self.tints.at(tints[x])
-                } else {
-                    self.encoder.bytes(self.brush.glowing(self.tints.sea_at(tints[x]), self.shore.glow(begin + x)))
+                let known = match (height_m > 0.0, ground) {
+                    (true, Some(_)) => Some(each(|c| self.encoder.byte(places[c][x]))),
+                    _ => self.shore.plain(begin + x).then(|| self.tints.at(tints[x])),
                 };
-                pixel.copy_from_slice(&colour);
-                continue;
+                if let Some(colour) = known {
+                    pixel.copy_from_slice(&colour);
+                    continue;
+                }
             }
+            let own = ground.filter(|_| height_m > 0.0 || line_px <= 1.0).map(|_| each(|c| flat[c][x]));
             let land = coast::land_share(height_m > 0.0, line_px);
             let place = Place { height_m, tone: tone[x], land, ground: own };
             let colour = self.brush.pixel(&self.scene, place, line_px, || self.shore.glow(begin + x));
@@ -202,7 +162,7 @@ impl Animation {
     }
 
     fn layer_row(&self, values: &Between, sea_m: f32, y: usize, room: &mut Room, out: &mut [u8]) {
-        let own = &mut room.around;
+        let own = &mut room.values;
         values.row(y, own);
         let (ink, half) = (hex(0x202830), 0.5 + 0.35 * self.unit);
         let begin = y * self.map.width;
@@ -221,8 +181,10 @@ impl Animation {
     }
 }
 
-struct Light<'a> {
-    form: Between<'a>,
-    around: Between<'a>,
-    factor: f32,
+/// Where the bytes of one part of a row's colours stand, red, green or blue, under light.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw", "x86_64+avx2"))]
+fn lit_places(c: usize, flat: &[f32], tones: &[f32], places: &mut [u16]) {
+    for ((place, &part), &tone) in places.iter_mut().zip(flat).zip(tones) {
+        *place = Encoder::place(lit_part(c, part, tone));
+    }
 }

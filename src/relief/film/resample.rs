@@ -1,42 +1,63 @@
 //! A world's layers at the picture's raster, of any size: Catmull-Rom, widened to the pixels where there are fewer of
 //! them than cells, so that nothing flickers between them. At the world's own size it changes nothing.
 
+use multiversion::multiversion;
 use rayon::prelude::*;
 
 use crate::grid::{Edges, Field, Grid, keys};
 
 /// For each pixel along one side, the cells it is made of and their weights.
 struct Taps {
-    /// Where each pixel's taps begin; one more than pixels.
-    begins: Vec<usize>,
-    taps: Vec<(usize, f32)>,
+    /// Cells of a pixel.
+    wide: usize,
+    /// The first cell of each pixel, counted from `before` cells before the side.
+    first: Vec<usize>,
+    weights: Vec<f32>,
+    /// Room before the side, cells; there is as much behind it.
+    before: usize,
+    cells: usize,
+    edges: Edges,
 }
 
 impl Taps {
     fn new(cells: usize, pixels: usize, edges: Edges) -> Self {
         let scale = cells as f64 / pixels as f64;
-        let wide = scale.max(1.0);
-        let (mut begins, mut taps) = (vec![0], Vec::new());
+        let reach = 2.0 * scale.max(1.0);
+        let wide = libm::floor(2.0 * reach) as usize + 1;
+        let before = libm::ceil(reach) as usize + 1;
+        let (mut first, mut weights) = (Vec::new(), Vec::new());
         for pixel in 0..pixels {
             let middle = (pixel as f64 + 0.5) * scale - 0.5;
-            let first = libm::ceil(middle - 2.0 * wide) as i64;
-            let last = libm::floor(middle + 2.0 * wide) as i64;
-            let weights: Vec<f64> = (first..=last).map(|cell| keys((cell as f64 - middle) / wide)).collect();
-            let sum: f64 = weights.iter().sum();
-            for (cell, weight) in (first..=last).zip(weights).filter(|(_, weight)| *weight != 0.0) {
-                let cell = match edges {
-                    Edges::Wrap => cell.rem_euclid(cells as i64),
-                    Edges::Open | Edges::Closed => cell.clamp(0, cells as i64 - 1),
-                };
-                taps.push((cell as usize, (weight / sum) as f32));
-            }
-            begins.push(taps.len());
+            let begin = libm::ceil(middle - reach) as i64;
+            let own = (0..wide as i64).map(|k| keys(((begin + k) as f64 - middle) / (0.5 * reach)));
+            let sum: f64 = own.clone().sum();
+            weights.extend(own.map(|weight| (weight / sum) as f32));
+            first.push((begin + before as i64) as usize);
         }
-        Self { begins, taps }
+        Self { wide, first, weights, before, cells, edges }
     }
 
-    fn of(&self, pixel: usize) -> &[(usize, f32)] {
-        &self.taps[self.begins[pixel]..self.begins[pixel + 1]]
+    /// The cells and weights of a pixel.
+    fn of(&self, pixel: usize) -> impl Iterator<Item = (usize, f32)> {
+        let weights = &self.weights[pixel * self.wide..][..self.wide];
+        let cells = (self.first[pixel]..).map(|place| self.cell(place));
+        cells.zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0)
+    }
+
+    /// The cell at a place, also before and behind the side.
+    fn cell(&self, place: usize) -> usize {
+        let (cell, cells) = (place as i64 - self.before as i64, self.cells as i64);
+        match self.edges {
+            Edges::Wrap => cell.rem_euclid(cells) as usize,
+            Edges::Open | Edges::Closed => cell.clamp(0, cells - 1) as usize,
+        }
+    }
+
+    /// Fills what lies before and behind the side in a line with room for it.
+    fn pad(&self, line: &mut [f32]) {
+        for place in (0..self.before).chain(self.before + self.cells..line.len()) {
+            line[place] = line[self.before + self.cell(place)];
+        }
     }
 }
 
@@ -59,16 +80,17 @@ impl Resampler {
     /// The sum of some fields of a quantity.
     pub fn sum(&self, fields: &[&Field<f32>]) -> Field<f32> {
         let mut out = Field::filled(self.to, 0.0);
-        let room = || vec![0.0f32; self.from.width];
+        let Taps { before, wide, first, weights, .. } = &self.columns;
+        let room = || vec![0.0f32; self.from.width + 2 * before];
         out.data.par_chunks_exact_mut(self.to.width).enumerate().for_each_init(room, |line, (y, row)| {
-            line.fill(0.0);
-            for &(j, weight) in self.rows.of(y) {
-                for field in fields {
-                    line.iter_mut().zip(field.row(j)).for_each(|(sum, v)| *sum += weight * v);
-                }
+            let own = &mut line[*before..][..self.from.width];
+            own.fill(0.0);
+            for (j, weight) in self.rows.of(y) {
+                fields.iter().for_each(|field| add(weight, field.row(j), own));
             }
-            for (x, value) in row.iter_mut().enumerate() {
-                *value = self.columns.of(x).iter().map(|&(i, weight)| weight * line[i]).sum();
+            self.columns.pad(line);
+            for ((value, &first), weights) in row.iter_mut().zip(first).zip(weights.chunks_exact(*wide)) {
+                *value = line[first..first + wide].iter().zip(weights).map(|(v, weight)| v * weight).sum();
             }
         });
         out
@@ -79,6 +101,13 @@ impl Resampler {
         let pick = |pixel: usize, pixels: usize, cells: usize| (2 * pixel + 1) * cells / (2 * pixels);
         let (from, to) = (self.from, self.to);
         Field::from_fn(to, |x, y| field.at(pick(x, to.width, from.width), pick(y, to.height, from.height)))
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn add(weight: f32, values: &[f32], sums: &mut [f32]) {
+    for (sum, v) in sums.iter_mut().zip(values) {
+        *sum += weight * v;
     }
 }
 

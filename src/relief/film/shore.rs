@@ -1,6 +1,7 @@
 //! The coast of a picture: the same line and the same glow as `coast` finds, only where there are any. The line is looked
 //! for no farther than it is wide.
 
+use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::super::{coast::distance, frame::unit_of, tint::Brush};
@@ -70,10 +71,9 @@ impl Shore {
             row.iter_mut().zip(z.row(y)).for_each(|(land, &h)| *land = u8::from(h > sea));
         });
         let land = &self.land;
-        match self.broad {
-            true => for_each_row(&mut self.line_px, width, |y, row| line::<2>(z, sea, land, y, row)),
-            false => for_each_row(&mut self.line_px, width, |y, row| line::<1>(z, sea, land, y, row)),
-        }
+        let look = if self.broad { line::<2> } else { line::<1> };
+        let rows = self.line_px.par_chunks_exact_mut(width).enumerate();
+        rows.for_each_init(Counts::default, |room, (y, row)| look(z, sea, land, y, room, row));
         self.sweep(width);
         let (rows, reach) = (&self.rows, self.reach);
         let room = || vec![0u16; width + 2 * reach];
@@ -100,23 +100,44 @@ impl Shore {
 }
 
 /// Distances to the contour along a row. Most pixels see land or sea alone, which counting tells quickly.
-fn line<const REACH: usize>(z: &Field<f32>, sea: f32, land: &[u8], y: usize, row: &mut [f32]) {
+fn line<const REACH: usize>(z: &Field<f32>, sea: f32, land: &[u8], y: usize, room: &mut Counts, row: &mut [f32]) {
     let (w, h) = (z.grid.width, z.grid.height);
     let (top, bottom) = (y.saturating_sub(REACH), (y + REACH).min(h - 1));
-    let mut counts = vec![0u8; w];
-    for j in top..=bottom {
-        counts.iter_mut().zip(&land[j * w..][..w]).for_each(|(count, land)| *count += land);
-    }
+    room.count::<REACH>(&land[top * w..(bottom + 1) * w], w);
     let tall = (bottom - top + 1) as u8;
-    for (x, out) in row.iter_mut().enumerate() {
-        let seen = &counts[x.saturating_sub(REACH)..(x + REACH + 1).min(w)];
-        let sum: u8 = seen.iter().sum();
-        let plain = sum == 0 || sum == tall * seen.len() as u8;
+    for (x, (out, &sum)) in row.iter_mut().zip(&room.around).enumerate() {
+        let wide = (x + REACH).min(w - 1) + 1 - x.saturating_sub(REACH);
+        let plain = sum == 0 || sum == tall * wide as u8;
         *out = if plain { f32::INFINITY } else { distance::<REACH>(z, sea, x, y) };
     }
 }
 
+/// How many pixels of land there are around those of a row.
+#[derive(Default)]
+struct Counts {
+    /// In each column, with room for the reach on either side.
+    columns: Vec<u8>,
+    around: Vec<u8>,
+}
+
+impl Counts {
+    /// Counts in some rows.
+    fn count<const REACH: usize>(&mut self, land: &[u8], width: usize) {
+        self.columns.clear();
+        self.columns.resize(width + 2 * REACH, 0);
+        for row in land.chunks_exact(width) {
+            self.columns[REACH..].iter_mut().zip(row).for_each(|(count, land)| *count += land);
+        }
+        self.around.clear();
+        self.around.resize(width, 0);
+        for step in 0..=2 * REACH {
+            self.around.iter_mut().zip(&self.columns[step..]).for_each(|(sum, count)| *sum += count);
+        }
+    }
+}
+
 /// Squared distances along a row from those along the columns.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw", "x86_64+avx2"))]
 fn across(rows: &[u8], reach: usize, padded: &mut [u16], out: &mut [u16]) {
     let far = (reach as u16 + 1) * (reach as u16 + 1);
     padded.fill(far);
@@ -134,7 +155,9 @@ fn across(rows: &[u8], reach: usize, padded: &mut [u16], out: &mut [u16]) {
         for step in 0..=2 * reach {
             let aside = step.abs_diff(reach) as u16;
             let aside = aside * aside;
-            out.iter_mut().zip(&near[step..]).for_each(|(to, &d)| *to = (*to).min(d + aside));
+            for (to, &d) in out.iter_mut().zip(&near[step..]) {
+                *to = (*to).min(d + aside);
+            }
         }
     }
 }

@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use super::{
-    super::{ReliefError, View, absent, cover::Cover, rivers::Waters, shade},
+    super::{ReliefError, View, absent, cover::Cover, rivers::Waters, shade::shade},
     resample::Resampler,
 };
 use crate::{
-    grid::{Field, Grid, blur},
+    grid::{Field, Grid},
     world::{Kind, Layer, World},
 };
 
@@ -16,10 +16,8 @@ use crate::{
 pub struct Shot {
     /// Height, m.
     pub(super) height: Field<f32>,
-    /// What slopes are taken of: the ground and two smoother copies of it, by their shares.
-    pub(super) form: Vec<f32>,
-    /// The ground around each pixel.
-    pub(super) around: Vec<f32>,
+    /// How bright each pixel is, -1 to 1.
+    pub(super) tone: Vec<f32>,
     /// The values of the layer that is shown, where it is not the relief.
     pub(super) values: Option<Vec<f32>>,
     /// The land's flat colours in linear light, red, green and blue apart, where there is weather.
@@ -28,8 +26,6 @@ pub struct Shot {
     pub(super) waters: Option<Waters>,
     /// Height of the sea, m.
     pub(super) sea_m: f32,
-    /// Exaggeration of slopes.
-    pub(super) exaggeration: f32,
     /// Years since the recipe began.
     pub(super) time_yr: f64,
 }
@@ -52,47 +48,20 @@ impl Shot {
         let cover = Some(view).filter(|view| **view == View::Relief);
         let cover = cover.and_then(|_| Cover::of(world, |field| resampler.sum(&[field])));
         let ground = cover.map(|cover| colours(&cover, &height));
-        let copy = |i: usize| blur(&height, shade::sigma_px(&height, i));
-        let shares = shade::SCALES.map(|(_, share)| share as f32);
-        let fine = copy(0);
         let has_land = height.data.iter().any(|&h| h > sea_m);
-        let exaggeration = shade::typical_exaggeration(&fine, |h| h > sea_m || !has_land) as f32;
-        let mut form = fine.data;
-        form.iter_mut().for_each(|form| *form *= shares[0]);
-        let mut add = |copy: &Field<f32>, share: f32| {
-            crate::grid::for_each_row(&mut form, map.width, |y, row| {
-                row.iter_mut().zip(copy.row(y)).for_each(|(form, v)| *form += v * share);
-            });
-        };
-        // One after the other, so that no more than one of them takes room.
-        add(&copy(1), shares[1]);
-        let around = copy(2);
-        add(&around, shares[2]);
-        Ok(Self {
-            height,
-            form,
-            around: around.data,
-            values,
-            ground,
-            waters,
-            sea_m,
-            exaggeration,
-            time_yr: world.time_yr,
-        })
+        let tone = shade(&height, |h| h > sea_m || !has_land, None).data;
+        Ok(Self { height, tone, values, ground, waters, sea_m, time_yr: world.time_yr })
     }
 
-    /// The flat ground before the first stage, lit as this moment is.
+    /// The flat ground before the first stage.
     pub fn before(&self) -> Self {
-        let flat = || vec![0.0; self.form.len()];
         Self {
             height: Field::filled(self.height.grid, 0.0),
-            form: flat(),
-            around: flat(),
+            tone: vec![0.0; self.tone.len()],
             values: self.values.clone(),
             ground: None,
             waters: None,
             sea_m: 0.0,
-            exaggeration: self.exaggeration,
             time_yr: 0.0,
         }
     }

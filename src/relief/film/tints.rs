@@ -1,25 +1,24 @@
-//! The map's colours by height and light, worked out once: land, and open sea.
+//! The map's colours by height and light, worked out once: land, and sea out of the coast's glow.
 
+use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::super::{
-    palette::{Encoder, Rgb},
+    palette::{Encoder, nearest},
     tint::{Brush, Place, Scene},
 };
 
 /// Heights told apart on land and in the sea: 3 m and 5 m on the scale of the Earth.
 const HEIGHTS: usize = 2048;
-/// Strengths of light told apart, a step of a byte each.
-const TONES: usize = 256;
-
-/// Of the lights on a sea floor, which are faint, one in so many is told apart.
-const FLOOR_TONES: usize = 4;
+/// Strengths of light told apart on land, a step of a byte each, and in the sea, whose floor is lit faintly. The sea's
+/// table stays in a processor's own cache.
+const TONES: [usize; 2] = [256, 128];
+/// Where the sea's colours begin.
+const SEA: usize = HEIGHTS * TONES[0];
 
 /// Bytes of colours.
 pub struct Tints {
     table: Vec<[u8; 3]>,
-    /// The sea's colours in linear light, to be mixed with its glow.
-    sea: Vec<Rgb>,
     /// Steps a metre, land and sea.
     per_m: [f32; 2],
 }
@@ -27,36 +26,21 @@ pub struct Tints {
 impl Tints {
     /// The colours of a scene over a sea at zero.
     pub fn new(scene: &Scene, brush: &Brush, encoder: &Encoder) -> Self {
-        let [top, bottom] = scene.reach_m();
-        let metres = [top, bottom].map(|end| end / (HEIGHTS - 1) as f32);
-        let linear = |row: usize, tone: f32| {
-            let tone = tone / (TONES - 1) as f32 * 2.0 - 1.0;
-            let place = match row.checked_sub(HEIGHTS) {
-                None => Place { height_m: row as f32 * metres[0], tone, land: 1.0, ground: None },
-                Some(row) => Place { height_m: row as f32 * metres[1], tone, land: 0.0, ground: None },
-            };
-            brush.pixel(scene, place, f32::INFINITY, || 0.0)
+        let metres = scene.reach_m().map(|end| end / (HEIGHTS - 1) as f32);
+        let bytes = |i: usize| {
+            let (part, i) = if i < SEA { (0, i) } else { (1, i - SEA) };
+            let (row, tone) = (i / TONES[part], i % TONES[part]);
+            let tone = tone as f32 / (TONES[part] - 1) as f32 * 2.0 - 1.0;
+            let place = Place { height_m: row as f32 * metres[part], tone, land: 1.0 - part as f32, ground: None };
+            encoder.bytes(brush.pixel(scene, place, f32::INFINITY, || 0.0))
         };
-        let bytes = |i: usize| encoder.bytes(linear(i / TONES, (i % TONES) as f32));
-        let table = (0..2 * HEIGHTS * TONES).into_par_iter().map(bytes).collect();
-        // The middle of the lights that one entry stands for.
-        let middle = |i: usize| (i * FLOOR_TONES % TONES) as f32 + 0.5 * (FLOOR_TONES - 1) as f32;
-        let floor = |i: usize| linear(HEIGHTS + i * FLOOR_TONES / TONES, middle(i));
-        let sea = (0..HEIGHTS * TONES / FLOOR_TONES).into_par_iter().map(floor).collect();
-        Self { table, sea, per_m: metres.map(f32::recip) }
+        let table = (0..SEA + HEIGHTS * TONES[1]).into_par_iter().map(bytes).collect();
+        Self { table, per_m: metres.map(f32::recip) }
     }
 
     /// Where the colours of a row's pixels stand.
-    pub fn places(&self, heights: &[f32], sea_m: f32, tone: &[f32], places: &mut [u32]) {
-        const TOP: f32 = (HEIGHTS - 1) as f32;
-        let [land, sea] = self.per_m;
-        for ((place, &height), &tone) in places.iter_mut().zip(heights).zip(tone) {
-            let over_m = height - sea_m;
-            let (per_m, begin) = if over_m > 0.0 { (land, 0) } else { (sea, HEIGHTS as i32) };
-            let row = (over_m * per_m + 0.5).clamp(0.0, TOP) as i32 + begin;
-            let tone = ((tone + 1.0) * (0.5 * (TONES - 1) as f32) + 0.5).clamp(0.0, (TONES - 1) as f32) as i32;
-            *place = (row * TONES as i32 + tone) as u32;
-        }
+    pub fn places(&self, heights: &[f32], sea_m: f32, tones: &[f32], places: &mut [u32]) {
+        find_places(self.per_m, heights, sea_m, tones, places);
     }
 
     /// The colour at a place.
@@ -64,11 +48,18 @@ impl Tints {
     pub fn at(&self, place: u32) -> [u8; 3] {
         self.table[place as usize]
     }
+}
 
-    /// The sea's colour at a place of the sea, in linear light.
-    #[inline]
-    pub fn sea_at(&self, place: u32) -> Rgb {
-        self.sea[(place as usize - HEIGHTS * TONES) / FLOOR_TONES]
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn find_places(per_m: [f32; 2], heights: &[f32], sea_m: f32, tones: &[f32], places: &mut [u32]) {
+    const TOP: f32 = (HEIGHTS - 1) as f32;
+    const BRIGHTEST: [f32; 2] = [(TONES[0] - 1) as f32, (TONES[1] - 1) as f32];
+    for ((place, &height), &tone) in places.iter_mut().zip(heights).zip(tones) {
+        let over_m = height - sea_m;
+        let bright = (0.5 * tone + 0.5).max(0.0).min(1.0);
+        let land = nearest((over_m * per_m[0]).max(0.0).min(TOP)) * TONES[0] as u32 + nearest(bright * BRIGHTEST[0]);
+        let sea = nearest((over_m * per_m[1]).max(0.0).min(TOP)) * TONES[1] as u32 + nearest(bright * BRIGHTEST[1]);
+        *place = if over_m > 0.0 { land } else { sea + SEA as u32 };
     }
 }
 
@@ -93,12 +84,6 @@ mod tests {
                 let apart = tints.at(place).iter().zip(want).map(|(a, b)| a.abs_diff(b)).max();
                 // Half a step of height where colours change fastest, and half a step of light.
                 assert!(apart <= Some(3), "{height_m} m, tone {}: {:?} {want:?}", tone[0], tints.at(place));
-                if height_m <= 0.0 {
-                    let glowing = encoder.bytes(brush.glowing(tints.sea_at(place), 0.2));
-                    let want = encoder.bytes(brush.pixel(&scene, place_of, f32::INFINITY, || 0.2));
-                    let apart = glowing.iter().zip(want).map(|(a, b)| a.abs_diff(b)).max();
-                    assert!(apart <= Some(3), "{height_m} m, tone {}: {glowing:?} {want:?}", tone[0]);
-                }
             }
         }
     }
