@@ -251,17 +251,17 @@ fn three_scales() -> Outcome<RgbImage> {
     Ok(relief::contact_sheet(&panels, panels.len()))
 }
 
-/// The same hills as they were and after each family, and below what was worn off.
+/// The same hills as they were and after each family, and below what was worn off: a metre on the mean of the map.
 fn five_ways() -> Outcome<RgbImage> {
     const HILLS: &str = "[world]\nseed = 4\nextent_km = 1.0\nsea_level_m = -1000.0\n[[stage]]\nkind = 'fbm'\n\
-                         height_m = 160.0\nbase_m = 300.0\nwavelength_km = 0.6\nhurst = 0.9\n";
+                         height_m = 110.0\nbase_m = 300.0\nwavelength_km = 0.7\nhurst = 1.0\n";
     const WAYS: [(&str, &str); 6] = [
         ("the start", ""),
-        ("thermal", "rock_angle_deg = 35.0\n"),
-        ("hydraulic_cells", ""),
-        ("pipes", "duration_h = 1.0\n"),
-        ("rain_particles", "duration_min = 2.0\n"),
-        ("droplets", ""),
+        ("thermal", "talus_angle_deg = 25.0\nrock_angle_deg = 30.0\n"),
+        ("hydraulic_cells", "morphological_factor = 28000.0\n"),
+        ("pipes", "duration_h = 1.25\nwet_talus_angle_deg = 30.0\n"),
+        ("rain_particles", "duration_min = 2.0\nmorphological_factor = 72.0\n"),
+        ("droplets", "duration_yr = 5500.0\n"),
     ];
     let options = Options::bare(PANEL);
     let (mut above, mut below) = (Vec::new(), Vec::new());
@@ -276,9 +276,16 @@ fn five_ways() -> Outcome<RgbImage> {
         let overrides = Overrides { size: Some("256".to_owned()), ..Overrides::default() };
         let world = grow(&Plan::new(&source, &overrides)?, &mut [])?;
         above.push((name.to_owned(), relief::map(&world, &View::Relief, &options)?));
-        let seen = if stage.is_empty() { View::Layer(Layer::Slope) } else { View::Layer(Layer::Wear) };
-        let label = if stage.is_empty() { "slope" } else { "wear" };
-        below.push((label.to_owned(), relief::map(&world, &seen, &options)?));
+        let (seen, label) = match world.layer(Layer::Wear).filter(|_| !stage.is_empty()) {
+            Some(wear) => {
+                let sum: f64 = wear.data.iter().map(|&v| v as f64).sum();
+                let most = wear.range().map_or(0.0, |(_, most)| most);
+                let mean = sum / wear.data.len() as f64;
+                (Layer::Wear, format!("wear: mean {mean:.2} m, most {most:.0} m"))
+            }
+            None => (Layer::Slope, "slope".to_owned()),
+        };
+        below.push((label, relief::map(&world, &View::Layer(seen), &options)?));
     }
     above.append(&mut below);
     Ok(relief::contact_sheet(&above, WAYS.len()))

@@ -53,8 +53,9 @@ impl Encoder {
     /// Where the byte of a linear value stands.
     #[inline(always)]
     pub fn place(value: f32) -> u16 {
-        // Also where there is no number.
-        nearest(value.max(0.0).min(1.0) * (Self::SIZE - 1) as f32) as u16
+        // What is no number is black.
+        let value = if value > 0.0 { value.min(1.0) } else { 0.0 };
+        nearest(value * (Self::SIZE - 1) as f32) as u16
     }
 
     /// The byte at a place.

@@ -75,6 +75,28 @@ fn ctrl_c_keeps_what_was_done() {
 
 #[cfg(unix)]
 #[test]
+fn a_second_ctrl_c_waits_for_nothing() {
+    let place = Place::new();
+    let arguments = [&LONG[..], &["w"]].concat();
+    let mut child = place.command(&arguments).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
+    let mut err = BufReader::new(child.stderr.take().unwrap());
+    let mut said = String::new();
+    while !said.contains("1/2 ") {
+        assert!(err.read_line(&mut said).unwrap() > 0, "it ended before it could be stopped: {said}");
+    }
+    // The second may find it gone.
+    for _ in 0..2 {
+        let _ = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    }
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    // Whatever stands is no world, and in nobody's way.
+    assert!(!place.path("w").exists(), "{:?}", place.entries());
+    let anew = place.run(&["grow", "fbm-rough", "--size", "16", "--out", "w", "--force"]);
+    assert_eq!((anew.code, place.entries()), (0, vec!["w".to_owned()]), "{}", anew.err);
+}
+
+#[cfg(unix)]
+#[test]
 fn a_resumed_run_keeps_the_timeline_of_the_whole() {
     let place = Place::new();
     // A long stage after the plates, so that there is time to stop behind them.

@@ -7,7 +7,7 @@ mod threads;
 use std::sync::atomic::AtomicBool;
 
 use upthrust::{
-    recipe::{Overrides, Plan, Source},
+    recipe::{Overrides, Plan, Preset, Source},
     timeline::{Sink, Timeline},
     world::World,
 };
@@ -16,6 +16,14 @@ use upthrust::{
 fn grown(preset: &str, size: &str, seed: Option<u64>) -> World {
     let overrides = Overrides { size: Some(size.to_owned()), seed, ..Overrides::default() };
     run(&Plan::new(&Source::find(preset).unwrap(), &overrides).unwrap(), &mut [])
+}
+
+/// A preset of a size whose plates, if it has any, are coarser and sooner done.
+fn small(preset: &Preset, size: &str) -> Plan {
+    let plates = preset.source().text.contains("kind = \"plates\"");
+    let set = plates.then(|| "plates.cells=200".to_owned()).into_iter().collect();
+    let overrides = Overrides { size: Some(size.to_owned()), set, ..Overrides::default() };
+    Plan::new(&preset.source(), &overrides).unwrap()
 }
 
 fn run(plan: &Plan, sinks: &mut [&mut dyn Sink]) -> World {

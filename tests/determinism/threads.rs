@@ -2,20 +2,24 @@
 
 use std::process::Command;
 
-use upthrust::{measure::layer_stats, recipe::presets};
+use upthrust::{
+    measure::layer_stats,
+    recipe::{Plan, presets},
+};
 
-use super::grown;
+use super::{run, small};
 
 #[test]
 fn every_preset_is_the_same_for_one_two_and_eight_threads() {
-    let on = |threads: usize, name: &str| {
+    let on = |threads: usize, plan: &Plan| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| grown(name, "128x112", None))
+        pool.install(|| run(plan, &mut []))
     };
     for preset in presets() {
-        let one = on(1, preset.name);
+        let plan = small(preset, "128x112");
+        let one = on(1, &plan);
         for threads in [2, 8] {
-            let many = on(threads, preset.name);
+            let many = on(threads, &plan);
             // Hashes first: they name the layer that differs.
             assert_eq!(layer_stats(&one), layer_stats(&many), "{} with {threads} threads", preset.name);
             assert!(one == many, "{} with {threads} threads: tables or books differ", preset.name);

@@ -1,5 +1,7 @@
 //! Water over faces, row by row. Rows of cells have one cell more at either end, which stands for what lies beyond.
 
+use std::hint::select_unpredictable;
+
 use super::rules::{Beat, GRAVITY, PIPE_M, RIM_FALL, Rules};
 
 /// The greater, in one instruction: `f32::max` takes three to be right about what is not a number.
@@ -54,13 +56,15 @@ pub struct Sides<'a> {
     pub depth: [&'a [f32]; 2],
     /// 1 on land, 0 in the sea.
     pub land: [&'a [f32]; 2],
+    /// Whether any of them is in the sea.
+    pub sea: bool,
 }
 
 impl<'a> Sides<'a> {
     #[inline(always)]
     pub fn cut(self, n: usize) -> Self {
-        let cut = |pair: [&'a [f32]; 2]| [&pair[0][..n], &pair[1][..n]];
-        Self { start: cut(self.start), wet: cut(self.wet), depth: cut(self.depth), land: cut(self.land) }
+        let cut = |[a, b]: [&'a [f32]; 2]| [&a[..n], &b[..n]];
+        Self { start: cut(self.start), wet: cut(self.wet), depth: cut(self.depth), land: cut(self.land), ..self }
     }
 
     /// Fall of the surface from one side to the other, and depth of what passes: never above the sill between them.
@@ -80,46 +84,58 @@ impl<'a> Sides<'a> {
     }
 }
 
-/// The flux after friction: the positive root of `a·q² + q = y`, which is Manning's law where it no longer changes.
+/// `drag/d^(7/3)`: what friction has to do with a flux.
 #[inline(always)]
-fn rub(y: f32, drag: f32, deep: f32) -> f32 {
+fn roughness(drag: f32, deep: f32) -> f32 {
     let r = inverse_cbrt(deep);
     let r2 = r * r;
     let r7 = r2 * r2 * (r2 * r);
-    let inner = 1.0 + drag * r7 * y.abs();
+    drag * r7
+}
+
+/// The flux after friction: the positive root of `a·q² + q = y`, which is Manning's law where it no longer changes.
+#[inline(always)]
+fn rub(y: f32, roughness: f32) -> f32 {
+    let inner = 1.0 + roughness * y.abs();
     (y + y) * inverse(1.0 + inner * inverse_root(inner))
 }
 
-/// Signed fluxes over a row of faces, m²/s, positive from side 0 to side 1: the old ones become the new ones.
+/// Signed fluxes over a row of faces, m²/s, positive from side 0 to side 1, from those of the step before; `rough` is room
+/// for a row.
 #[inline(always)]
-pub fn push(beat: &Beat, sides: Sides, flux: &mut [f32]) {
-    let sides = sides.cut(flux.len());
-    let (pull, drag) = (beat.pull, beat.drag);
-    if drag == 0.0 {
-        for i in 0..flux.len() {
-            let (fall, deep) = sides.fall(i);
-            flux[i] = (flux[i] + pull * deep * fall) * sides.open(i);
-        }
-        return;
-    }
-    for i in 0..flux.len() {
+pub fn push(beat: &Beat, sides: Sides, old: &[f32], flux: &mut [f32], rough: &mut [f32]) {
+    let n = flux.len();
+    let (sides, old, rough) = (sides.cut(n), &old[..n], &mut rough[..n]);
+    // Two short loops rather than one: a processor that waits for each step of a long one has no room to begin the next.
+    for i in 0..n {
         let (fall, deep) = sides.fall(i);
-        flux[i] = rub(flux[i] + pull * deep * fall, drag, deep) * sides.open(i);
+        flux[i] = old[i] + beat.pull * deep * fall;
+        rough[i] = roughness(beat.drag, deep);
+    }
+    if beat.drag != 0.0 {
+        for i in 0..n {
+            flux[i] = rub(flux[i], rough[i]);
+        }
+    }
+    if sides.sea {
+        for i in 0..n {
+            flux[i] *= sides.open(i);
+        }
     }
 }
 
 /// One-sided fluxes over a row of faces: `ahead` from side 0 to side 1, `back` the other way.
 #[inline(always)]
-pub fn push_apart(beat: &Beat, sides: Sides, ahead: &mut [f32], back: &mut [f32]) {
+pub fn push_apart(beat: &Beat, sides: Sides, old: [&[f32]; 2], ahead: &mut [f32], back: &mut [f32]) {
     let n = ahead.len();
-    let (sides, back) = (sides.cut(n), &mut back[..n]);
+    let (sides, old, back) = (sides.cut(n), [&old[0][..n], &old[1][..n]], &mut back[..n]);
     for i in 0..n {
         let (fall, deep) = sides.fall(i);
         let gain = beat.pull * deep * fall;
-        let (a, b) = (hi(ahead[i] + gain, 0.0), hi(back[i] - gain, 0.0));
-        let free = beat.drag == 0.0;
-        ahead[i] = if free { a } else { rub(a, beat.drag, deep) } * sides.open(i);
-        back[i] = if free { b } else { rub(b, beat.drag, deep) } * sides.open(i);
+        let (a, b) = (hi(old[0][i] + gain, 0.0), hi(old[1][i] - gain, 0.0));
+        let (free, rough) = (beat.drag == 0.0, roughness(beat.drag, deep));
+        ahead[i] = if free { a } else { rub(a, rough) } * sides.open(i);
+        back[i] = if free { b } else { rub(b, rough) } * sides.open(i);
     }
 }
 
@@ -158,10 +174,11 @@ pub fn give(share: [&[f32]; 2], thick: [&[f32]; 2], flux: &mut [f32], load: &mut
     let (share, thick) = ([&share[0][..n], &share[1][..n]], [&thick[0][..n], &thick[1][..n]]);
     let load = &mut load[..n];
     for i in 0..n {
+        // Not an `if`: that would choose the place to read from, and slow gathers would read it.
         let ahead = flux[i] >= 0.0;
-        let q = flux[i] * if ahead { share[0][i] } else { share[1][i] };
+        let q = flux[i] * select_unpredictable(ahead, share[0][i], share[1][i]);
         flux[i] = q;
-        load[i] = q * if ahead { thick[0][i] } else { thick[1][i] };
+        load[i] = q * select_unpredictable(ahead, thick[0][i], thick[1][i]);
     }
 }
 

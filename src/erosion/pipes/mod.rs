@@ -40,8 +40,10 @@
 
 mod advect;
 mod bench;
+mod faces;
 mod family;
 mod flow;
+mod line;
 mod momentum;
 mod params;
 mod process;
@@ -49,6 +51,7 @@ mod rules;
 mod sea;
 mod sediment;
 mod slip;
+mod sums;
 mod sweep;
 mod view;
 

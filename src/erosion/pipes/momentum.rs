@@ -40,7 +40,8 @@ impl Faces<'_> {
         fn sides(pair: &[f32; 2]) -> [&[f32]; 2] {
             [&pair[..1], &pair[1..]]
         }
-        let face = Sides { start: sides(&start), wet: sides(&wet), depth: sides(&depth), land: sides(&wet) };
+        let face =
+            Sides { start: sides(&start), wet: sides(&wet), depth: sides(&depth), land: sides(&wet), sea: false };
         face.fall(0).1
     }
 

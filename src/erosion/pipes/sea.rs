@@ -1,8 +1,8 @@
 //! The sea: cells whose bed is below its level hold that level, and what sediment comes to them falls to the ground.
 
 use super::{
-    bench::Line,
     flow::{hi, lo},
+    line::Line,
     rules::{Rules, STRIDE},
     sediment::room,
 };

@@ -20,19 +20,6 @@ pub struct Before<'a> {
     pub south: [&'a [f32]; 2],
 }
 
-/// A row of cells after the step.
-pub struct After<'a> {
-    pub depth: &'a mut [f32],
-    pub load: &'a mut [f32],
-    /// What is to be added to the bed, m.
-    pub bed: &'a mut [f32],
-    /// Square of the speed, m²/s².
-    pub speed2: &'a mut [f32],
-    /// Water that dried up, m, and that rounding made.
-    pub dried: &'a mut [f32],
-    pub made: &'a mut [f32],
-}
-
 /// A smooth step from 0 to 1.
 #[inline(always)]
 pub fn ramp(t: f32) -> f32 {
@@ -46,44 +33,86 @@ pub fn room(rules: &Rules, height: f32) -> f32 {
     hi((height - rules.sea_m).abs() - 4e-7 * (height.abs() + rules.sea_m.abs()), 0.0)
 }
 
-/// Sums of water and sediment over the faces, then exchange with the bed.
+/// What the water of a row does: its depth after the step, and in `able` the sediment that it can carry, m. `speed2` becomes
+/// the square of the speed, m²/s², `dried` the water that dried up, m, `made` what rounding added, and `flux` what passed
+/// over the faces to the west and north. Single slices, so that the compiler knows that none overlap.
 #[inline(always)]
-pub fn exchange(rules: &Rules, beat: &Beat, before: &Before, after: &mut After, soft: &[f32]) {
-    let n = after.depth.len();
-    let [north, here, south] = before.ground.map(|row| &row[..n + 2]);
-    let (depth, act, load) = (&before.depth[1..][..n], &before.act[1..][..n], &before.load[..n]);
-    let [qw, sw] = before.x.map(|row| &row[..n]);
-    let [qe, se] = before.x.map(|row| &row[1..][..n]);
-    let [qn, sn] = before.north.map(|row| &row[..n]);
-    let [qs, ss] = before.south.map(|row| &row[..n]);
-    let (new_depth, new_load) = (&mut after.depth[..n], &mut after.load[..n]);
-    let (bed, speed2) = (&mut after.bed[..n], &mut after.speed2[..n]);
-    let (dried, made) = (&mut after.dried[..n], &mut after.made[..n]);
-    let soft = &soft[..n];
+#[expect(clippy::too_many_arguments)]
+pub fn run(
+    rules: &Rules,
+    beat: &Beat,
+    before: &Before,
+    new_depth: &mut [f32],
+    able: &mut [f32],
+    speed2: &mut [f32],
+    dried: &mut [f32],
+    made: &mut [f32],
+    flux_x: &mut [f32],
+    flux_y: &mut [f32],
+) {
+    let n = able.len();
+    // Slices of one length, each cut on its own (`map` hides their length), need no check in the loop.
+    let [north, here, south] = before.ground;
+    let (west, east) = (&here[..n], &here[2..][..n]);
+    let (north, south, depth) = (&north[1..][..n], &south[1..][..n], &before.depth[1..][..n]);
+    let (qw, qe, qn, qs) = (&before.x[0][..n], &before.x[0][1..][..n], &before.north[0][..n], &before.south[0][..n]);
+    let (new_depth, speed2) = (&mut new_depth[..n], &mut speed2[..n]);
+    let (dried, made) = (&mut dried[..n], &mut made[..n]);
+    let (flux_x, flux_y) = (&mut flux_x[..n], &mut flux_y[..n]);
     let fastest2 = beat.fastest * beat.fastest;
     let slopes = 0.5 / rules.cell_m;
-    let (stride_m, bump_m, per_factor) = (STRIDE * rules.cell_m, BUMP * rules.cell_m, 1.0 / rules.factor);
-    let locked = if rules.locked { 0.25 } else { f32::MAX };
     for i in 0..n {
         let d1 = depth[i];
         let came = beat.pace * ((qw[i] - qe[i]) + (qn[i] - qs[i]));
         let d2 = hi(d1 + came, 0.0);
-        let brought = beat.pace * ((sw[i] - se[i]) + (sn[i] - ss[i]));
-        let carried = hi(load[i] + brought, 0.0);
         let per_depth = inverse(hi(0.5 * (d1 + d2), STILL_M));
         // Squares before the mean: where a stream turns, each face has half of it, and it is as fast as where it is straight.
         let through2 = (qw[i] * qw[i] + qe[i] * qe[i]) + (qn[i] * qn[i] + qs[i] * qs[i]);
         let v2 = lo(0.5 * through2 * (per_depth * per_depth), fastest2);
         let (u, v) = (0.5 * (qw[i] + qe[i]) * per_depth, 0.5 * (qn[i] + qs[i]) * per_depth);
-        let (z, w, e, n, s) = (here[i + 1], here[i], here[i + 2], north[i + 1], south[i + 1]);
-        let (gx, gy) = (slopes * (e - w), slopes * (s - n));
+        let (gx, gy) = (slopes * (east[i] - west[i]), slopes * (south[i] - north[i]));
         let g2 = gx * gx + gy * gy;
         let sine2 = hi(1.0 - inverse(1.0 + g2), rules.tilt2);
         let deep = ramp(d2 * rules.per_film) * (1.0 - ramp((d2 - rules.shallow_m) * rules.per_deep));
         let force2 = v2 * sine2;
         let thick = lo(rules.capacity * deep * (force2 * inverse_root(hi(force2, 1e-30))), THICKEST);
-        let lack = thick * d2 - carried;
+        able[i] = thick * d2;
+        let left = hi(d2 - beat.dry_m, 0.0);
+        new_depth[i] = left;
+        dried[i] = d2 - left;
+        // What the depth gained and no flux brought: rounding, and the cut at nothing.
+        made[i] = (d2 - d1) - came;
+        speed2[i] = if d2 > SHEET_M { u * u + v * v } else { 0.0 };
+        (flux_x[i], flux_y[i]) = (qw[i], qn[i]);
+    }
+}
+
+/// Brings a row's sediment over its faces, and exchanges it with the bed: `bed` becomes what is to be added to that, m.
+#[inline(always)]
+pub fn exchange(
+    rules: &Rules,
+    beat: &Beat,
+    before: &Before,
+    able: &[f32],
+    soft: &[f32],
+    new_load: &mut [f32],
+    bed: &mut [f32],
+) {
+    let n = bed.len();
+    let [north, here, south] = before.ground;
+    let (west, east) = (&here[..n], &here[2..][..n]);
+    let (north, here, south) = (&north[1..][..n], &here[1..][..n], &south[1..][..n]);
+    let (able, soft, act, load) = (&able[..n], &soft[..n], &before.act[1..][..n], &before.load[..n]);
+    let (sw, se, sn, ss) = (&before.x[1][..n], &before.x[1][1..][..n], &before.north[1][..n], &before.south[1][..n]);
+    let new_load = &mut new_load[..n];
+    let (stride_m, bump_m, per_factor) = (STRIDE * rules.cell_m, BUMP * rules.cell_m, 1.0 / rules.factor);
+    let locked = if rules.locked { 0.25 } else { f32::MAX };
+    for i in 0..n {
+        let brought = beat.pace * ((sw[i] - se[i]) + (sn[i] - ss[i]));
+        let carried = hi(load[i] + brought, 0.0);
+        let lack = able[i] - carried;
         let share = if lack > 0.0 { beat.dissolve * soft[i] } else { beat.settle };
+        let (z, w, e, n, s) = (here[i], west[i], east[i], north[i], south[i]);
         let low = lo(lo(w, e), lo(n, s));
         let mean = 0.25 * ((w + e) + (n + s));
         let most = lo(stride_m, locked * room(rules, z));
@@ -94,12 +123,6 @@ pub fn exchange(rules: &Rules, beat: &Beat, before: &Before, after: &mut After, 
         new_load[i] = hi(carried + worn * per_factor, 0.0);
         // Of the bed comes what the load really gained besides what fluxes brought, rounding and all.
         bed[i] = -rules.factor * ((new_load[i] - load[i]) - brought);
-        let left = hi(d2 - beat.dry_m, 0.0);
-        new_depth[i] = left;
-        dried[i] = d2 - left;
-        // What the depth gained and no flux brought: rounding, and the cut at nothing.
-        made[i] = (d2 - d1) - came;
-        speed2[i] = if d2 > SHEET_M { u * u + v * v } else { 0.0 };
     }
 }
 

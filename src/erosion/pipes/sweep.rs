@@ -4,12 +4,17 @@
 //! either side) it works out for itself, with the same bits. Within a band rows follow each other through the stages, four
 //! at a time, so that all that lies between stages stays in the nearest memory.
 
+use multiversion::multiversion;
+
 use super::{
-    bench::{Bench, Faces, Line, greatest, slot, total},
+    bench::{Bench, slot},
+    faces::Faces,
+    line::Line,
     rules::{Beat, Rules},
     sea,
-    sediment::{self, After, Before},
+    sediment::{self, Before},
     slip,
+    sums::{greatest, total},
 };
 use crate::grid::Edges;
 
@@ -45,6 +50,18 @@ pub struct Old<'a> {
     pub rate: &'a [f32],
 }
 
+/// Row `y` of values by cell; nothing where there are none.
+pub fn cut(all: &[f32], y: usize, width: usize) -> &[f32] {
+    if all.is_empty() { all } else { &all[y * width..][..width] }
+}
+
+impl<'a> Old<'a> {
+    /// Fluxes at the faces of row `y`, and those back where the two are apart.
+    pub fn faces(&self, axis: usize, y: usize, width: usize) -> [&'a [f32]; 2] {
+        [cut(self.flux[axis], y, width), cut(self.back[axis], y, width)]
+    }
+}
+
 /// Rows of the map after a step.
 pub struct New<'a> {
     pub change: &'a mut [f32],
@@ -59,39 +76,23 @@ pub struct New<'a> {
 }
 
 impl<'a> New<'a> {
-    fn split(self, rows: usize, width: usize) -> (Self, Self) {
-        fn at<T>(all: &mut [T], n: usize) -> (&mut [T], &mut [T]) {
-            let n = n.min(all.len());
-            all.split_at_mut(n)
+    /// Takes off the first rows, and half of the benches.
+    fn split_off(&mut self, rows: usize, width: usize) -> Self {
+        fn first<'a, T>(all: &mut &'a mut [T], n: usize) -> &'a mut [T] {
+            all.split_off_mut(..n.min(all.len())).unwrap_or_default()
         }
-        let n = rows * width;
-        let (change, depth, load) = (at(self.change, n), at(self.depth, n), at(self.load, n));
-        let ([fx, fy], [bx, by]) = (self.flux.map(|v| at(v, n)), self.back.map(|v| at(v, n)));
-        let (rest, soft, books) = (at(self.rest, n), at(self.soft, n), at(self.books, rows));
-        let benches = at(self.benches, self.benches.len() / 2);
-        let one = Self {
-            change: change.0,
-            depth: depth.0,
-            load: load.0,
-            flux: [fx.0, fy.0],
-            back: [bx.0, by.0],
-            rest: rest.0,
-            soft: soft.0,
-            books: books.0,
-            benches: benches.0,
-        };
-        let two = Self {
-            change: change.1,
-            depth: depth.1,
-            load: load.1,
-            flux: [fx.1, fy.1],
-            back: [bx.1, by.1],
-            rest: rest.1,
-            soft: soft.1,
-            books: books.1,
-            benches: benches.1,
-        };
-        (one, two)
+        let (n, benches) = (rows * width, self.benches.len() / 2);
+        Self {
+            change: first(&mut self.change, n),
+            depth: first(&mut self.depth, n),
+            load: first(&mut self.load, n),
+            flux: self.flux.each_mut().map(|all| first(all, n)),
+            back: self.back.each_mut().map(|all| first(all, n)),
+            rest: first(&mut self.rest, n),
+            soft: first(&mut self.soft, n),
+            books: first(&mut self.books, rows),
+            benches: first(&mut self.benches, benches),
+        }
     }
 }
 
@@ -100,50 +101,20 @@ pub fn sweep(rules: &Rules, beat: &Beat, old: Old, new: New) {
     divide(rules, beat, old, new, 0);
 }
 
-fn divide(rules: &Rules, beat: &Beat, old: Old, new: New, first: usize) {
+fn divide(rules: &Rules, beat: &Beat, old: Old, mut new: New, first: usize) {
     let rows = new.books.len();
     if new.benches.len() <= 1 || rows < 2 {
         return band(rules, beat, old, new, first);
     }
     let upper = rows * (new.benches.len() / 2) / new.benches.len();
-    let (one, two) = new.split(upper, rules.width);
-    rayon::join(|| divide(rules, beat, old, one, first), || divide(rules, beat, old, two, first + upper));
+    let one = new.split_off(upper, rules.width);
+    rayon::join(|| divide(rules, beat, old, one, first), || divide(rules, beat, old, new, first + upper));
 }
 
-/// The widest vectors that the processor has: the arithmetic is the same in all, and so are the bits.
-fn band(rules: &Rules, beat: &Beat, old: Old, new: New, first: usize) {
-    #[cfg(target_arch = "x86_64")]
-    {
-        #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
-        fn wide(rules: &Rules, beat: &Beat, old: Old, new: New, first: usize) {
-            rows(rules, beat, old, new, first);
-        }
-        #[target_feature(enable = "avx2")]
-        fn middle(rules: &Rules, beat: &Beat, old: Old, new: New, first: usize) {
-            rows(rules, beat, old, new, first);
-        }
-        let has = (
-            is_x86_feature_detected!("avx512f")
-                && is_x86_feature_detected!("avx512vl")
-                && is_x86_feature_detected!("avx512dq")
-                && is_x86_feature_detected!("avx512bw"),
-            is_x86_feature_detected!("avx2"),
-        );
-        if has.0 {
-            // SAFETY: the processor has just said that it can.
-            return unsafe { wide(rules, beat, old, new, first) };
-        }
-        if has.1 {
-            // SAFETY: the processor has just said that it can.
-            return unsafe { middle(rules, beat, old, new, first) };
-        }
-    }
-    rows(rules, beat, old, new, first);
-}
-
-#[inline(always)]
-fn rows(rules: &Rules, beat: &Beat, old: Old, new: New, first: usize) {
-    let mut new = new;
+/// Takes the step for some rows, in the widest vectors that the processor has: the arithmetic is the same in all, and so are
+/// the bits.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn band(rules: &Rules, beat: &Beat, old: Old, mut new: New, first: usize) {
     let Some((bench, _)) = std::mem::take(&mut new.benches).split_first_mut() else { return };
     let (top, end) = (first as isize, (first + new.books.len()) as isize);
     for y in top - 2..end + 2 {
@@ -174,6 +145,7 @@ fn row(rules: &Rules, beat: &Beat, old: &Old, new: &mut New, bench: &mut Bench, 
     let line = &bench.lines[slot(y)];
     let (x, north, south) = (&bench.x[slot(y)], &bench.y[slot(y)], &bench.y[slot(y + 1)]);
     let (depth, load) = (&mut new.depth[to..][..w], &mut new.load[to..][..w]);
+    let [out_x, out_y] = new.flux.each_mut().map(|all| &mut all[to..][..w]);
     let (bed, change) = (&mut bench.bed[..w], &mut new.change[to..][..w]);
     let ground = three(|l| &l.ground);
     let before = Before {
@@ -186,9 +158,10 @@ fn row(rules: &Rules, beat: &Beat, old: &Old, new: &mut New, bench: &mut Bench, 
         south: [&south.water, &south.load],
     };
     let soft = if new.soft.is_empty() { &mut bench.soft[..] } else { &mut new.soft[to..][..w] };
-    let mut after =
-        After { depth, load, bed, speed2: &mut bench.speed2, dried: &mut bench.dried, made: &mut bench.made };
-    sediment::exchange(rules, beat, &before, &mut after, soft);
+    let (speed2, dried, made) = (&mut bench.speed2[..], &mut bench.dried[..], &mut bench.made[..]);
+    let able = &mut bench.able[..w];
+    sediment::run(rules, beat, &before, depth, able, speed2, dried, made, out_x, out_y);
+    sediment::exchange(rules, beat, &before, able, soft, load, bed);
     if rules.softening > 0.0 {
         sediment::soften(rules, bed, soft);
     }
@@ -209,13 +182,10 @@ fn row(rules: &Rules, beat: &Beat, old: &Old, new: &mut New, bench: &mut Bench, 
     let water = [&old.depth[from..][..w], &bench.dried[..w], &bench.made[..w]];
     let drowned = sea::level(rules, line, [start, change], water, came, depth);
     if rules.mei {
-        new.flux[0][to..][..w].copy_from_slice(&x.ahead[..w]);
-        new.flux[1][to..][..w].copy_from_slice(&north.ahead[..w]);
+        out_x.copy_from_slice(&x.ahead[..w]);
+        out_y.copy_from_slice(&north.ahead[..w]);
         new.back[0][to..][..w].copy_from_slice(&x.back[..w]);
         new.back[1][to..][..w].copy_from_slice(&north.back[..w]);
-    } else {
-        new.flux[0][to..][..w].copy_from_slice(&x.water[..w]);
-        new.flux[1][to..][..w].copy_from_slice(&north.water[..w]);
     }
     let mut over = [0.0; 2];
     if rules.edges == Edges::Open {

@@ -56,9 +56,9 @@ fn find_places(per_m: [f32; 2], heights: &[f32], sea_m: f32, tones: &[f32], plac
     const BRIGHTEST: [f32; 2] = [(TONES[0] - 1) as f32, (TONES[1] - 1) as f32];
     for ((place, &height), &tone) in places.iter_mut().zip(heights).zip(tones) {
         let over_m = height - sea_m;
-        let bright = (0.5 * tone + 0.5).max(0.0).min(1.0);
-        let land = nearest((over_m * per_m[0]).max(0.0).min(TOP)) * TONES[0] as u32 + nearest(bright * BRIGHTEST[0]);
-        let sea = nearest((over_m * per_m[1]).max(0.0).min(TOP)) * TONES[1] as u32 + nearest(bright * BRIGHTEST[1]);
+        let bright = (0.5 * tone + 0.5).clamp(0.0, 1.0);
+        let land = nearest((over_m * per_m[0]).clamp(0.0, TOP)) * TONES[0] as u32 + nearest(bright * BRIGHTEST[0]);
+        let sea = nearest((over_m * per_m[1]).clamp(0.0, TOP)) * TONES[1] as u32 + nearest(bright * BRIGHTEST[1]);
         *place = if over_m > 0.0 { land } else { sea + SEA as u32 };
     }
 }
