@@ -56,7 +56,7 @@ pub fn shade(z: &Field<f32>, counts: impl Fn(f32) -> bool + Sync, exaggeration: 
             *tone = (z - *tone) * over_per_m;
         }
         slopes(&form, y, slope_per_m, across, down);
-        lamps.shine(across, down, tones);
+        shine(&lamps, across, down, tones);
     });
     tones
 }
@@ -95,11 +95,6 @@ impl Lamps {
         Self { lights, flat: lights.iter().map(|l| l[2]).sum() }
     }
 
-    /// How bright the places of a row are, by their exaggerated slopes; `tones` bring their heights over the surroundings.
-    fn shine(&self, across: &[f32], down: &[f32], tones: &mut [f32]) {
-        shine(self, across, down, tones);
-    }
-
     /// How bright a place is, by its exaggerated slope and its height over the surroundings.
     #[inline(always)]
     fn tone(&self, [gx, gy]: [f32; 2], over: f32) -> f32 {
@@ -125,6 +120,7 @@ fn sigma_px(z: &Field<f32>, copy: usize) -> f64 {
     (SCALES[copy].0 * side / 1000.0).max(LEAST_PX[copy])
 }
 
+/// How bright the places of a row are, by their exaggerated slopes; `tones` bring their heights over the surroundings.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn shine(lamps: &Lamps, across: &[f32], down: &[f32], tones: &mut [f32]) {
     for ((tone, &gx), &gy) in tones.iter_mut().zip(across).zip(down) {
