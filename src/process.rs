@@ -36,6 +36,12 @@ pub trait Process: Send {
         Vec::new()
     }
 
+    /// What a person should know of what it met while it ran, a line each: cells of a file that had no height. Asked when
+    /// it is over; a stage that can be stopped before that keeps it in its state.
+    fn findings(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The grid it leaves behind, for those that change it. Asked while a recipe is read, so that the stages behind are
     /// asked about the right one.
     fn grid_after(&self, grid: &Grid) -> Grid {

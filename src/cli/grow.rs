@@ -57,7 +57,11 @@ fn folder(request: &Request, voice: Voice, cancel: &AtomicBool) -> Result<Grown,
     let mut progress = Progress::new(voice);
     let grown = job::grow(request, cancel, &mut |event| progress.hear(&event));
     progress.end();
-    Ok(grown?)
+    let grown = grown?;
+    if voice == Voice::Normal {
+        grown.notes.iter().for_each(|note| say(&format!("note: {note}")));
+    }
+    Ok(grown)
 }
 
 fn announce(plan: &Plan, estimate: &Estimate) -> String {

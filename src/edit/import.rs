@@ -114,7 +114,7 @@ impl Default for ImportParams {
 impl ImportParams {
     /// The stage as a process.
     pub fn process(self, placement: Placement) -> Box<dyn Process> {
-        Box::new(Import { params: self, placement })
+        Box::new(Import { params: self, placement, findings: Vec::new() })
     }
 
     /// What the file says of itself; reads no heights.
@@ -171,6 +171,7 @@ impl ImportParams {
                 return Err(Problem::Holes(holes, first % map.width, first / map.width));
             }
             fill(&mut map.heights, map.width, map.height);
+            map.filled = holes;
         }
         if self.smooth > 0.0 && map.step_m > 0.0 {
             unstep(&mut map.heights, map.width, 0.5 * map.step_m * self.smooth as f32);
@@ -225,19 +226,29 @@ impl ImportParams {
         remarks
     }
 
-    fn over(&self, grid: Grid) -> Result<Field<f32>, EditError> {
-        let map = self.read()?;
+    /// What a person should know of the heights once they are read, a line each.
+    fn findings(&self, map: &Heightmap) -> Vec<String> {
+        let [filled, all] = [map.filled, map.heights.len()];
+        let share = 100.0 * filled as f64 / all as f64;
+        let line = || {
+            format!("{}: {filled} of {all} cells ({share:.2} %) had no height and were filled in (no_data)", self.path)
+        };
+        Vec::from_iter((filled > 0).then(line))
+    }
+
+    fn over(&self, map: Heightmap, grid: Grid) -> Field<f32> {
         // Cells of one unit: only the numbers of cells matter for bringing one raster to another.
         let edges = if grid.edges == Edges::Wrap { Edges::Wrap } else { Edges::Open };
         let own = Grid { width: map.width, height: map.height, cell_m: 1.0, edges };
         let heights = Field { grid: own, data: map.heights };
-        Ok(Field { grid, data: resample(&heights, grid.width, grid.height, Points::Centres) })
+        Field { grid, data: resample(&heights, grid.width, grid.height, Points::Centres) }
     }
 }
 
 struct Import {
     params: ImportParams,
     placement: Placement,
+    findings: Vec<String>,
 }
 
 impl Process for Import {
@@ -245,10 +256,16 @@ impl Process for Import {
         &[Layer::Bedrock]
     }
 
+    fn findings(&self) -> Vec<String> {
+        self.findings.clone()
+    }
+
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
         context.check()?;
         let ground = self.placement.over(world)?;
-        let heights = self.params.over(world.grid).map_err(|e| ProcessError::Unfit(e.to_string()))?;
+        let map = self.params.read().map_err(|e| ProcessError::Unfit(e.to_string()))?;
+        self.findings = self.params.findings(&map);
+        let heights = self.params.over(map, world.grid);
         context.check()?;
         ground.put(&heights, world, context);
         Ok(Step::WHOLE)

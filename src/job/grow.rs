@@ -55,6 +55,8 @@ pub struct Grown {
     pub folder: PathBuf,
     /// Its `manifest.json`.
     pub manifest: String,
+    /// What a person should know of what its stages met, a line each.
+    pub notes: Vec<String>,
     /// Films and frames that were made outside the folder, and the film in it.
     pub films: Vec<PathBuf>,
     /// Why films or frames that were asked for are not there; the world is, all the same.
@@ -123,12 +125,23 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     keep.map_or(Ok(()), |keep| keep.finish(&partial.path().join(STORE)))?;
     let in_time = [(SERIES, series.finish(&partial.path())?), (PROFILES, profiles.finish(&partial.path())?)];
     let mut manifest = Manifest::new(plan, &world, measure::inspect(&world), height_png);
+    let notes = findings(plan, &stages);
     manifest.stages = stages;
     manifest.in_time = in_time.into_iter().filter(|(_, made)| *made).map(|(file, _)| file).collect();
     manifest.until = ended;
     manifest.seconds = started.elapsed().as_secs_f64();
     manifest.write(&partial.path())?;
-    Ok(Grown { folder: partial.finish()?, manifest: manifest.text(), films, failures })
+    Ok(Grown { folder: partial.finish()?, manifest: manifest.text(), notes, films, failures })
+}
+
+/// What stages have met that a person should know, under the names people have for them.
+fn findings(plan: &Plan, records: &[StageRecord]) -> Vec<String> {
+    let label = |key: &str| plan.with_coupled().find(|s| s.key == key).map_or(key, |stage| &stage.label).to_owned();
+    let lines = |record: &StageRecord| {
+        let name = label(&record.stage);
+        record.findings.iter().map(|line| format!("stage '{name}': {line}")).collect::<Vec<_>>()
+    };
+    records.iter().flat_map(lines).collect()
 }
 
 /// The layers of the timeline, where one is kept: also those by which the land is coloured, for films of it.
@@ -156,7 +169,7 @@ fn finished(plan: &Plan, until: Option<&str>, out: &Path) -> Result<Option<Grown
             "{shown}: the world there is of another recipe; choose another --out, or replace it with --force"
         )));
     }
-    Ok(Some(Grown { folder: out.to_owned(), manifest, films: Vec::new(), failures: Vec::new() }))
+    Ok(Some(Grown { folder: out.to_owned(), manifest, notes: Vec::new(), films: Vec::new(), failures: Vec::new() }))
 }
 
 /// Runs a plan without writing anything.

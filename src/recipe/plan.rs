@@ -289,8 +289,12 @@ impl Plan {
 
     /// The names of all stages, for messages.
     pub fn stage_names(&self) -> String {
-        let with_coupled = self.stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.coupled));
-        with_coupled.map(|stage| stage.label.as_str()).collect::<Vec<_>>().join(", ")
+        self.with_coupled().map(|stage| stage.label.as_str()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// All stages, each followed by those coupled to it.
+    pub fn with_coupled(&self) -> impl Iterator<Item = &Stage> {
+        self.stages.iter().flat_map(|stage| std::iter::once(stage).chain(&stage.coupled))
     }
 }
 

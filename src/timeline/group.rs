@@ -130,6 +130,7 @@ impl<'a> Group<'a> {
             steps,
             seconds: if at == 0 { (seconds - following).max(0.0) } else { member.seconds },
             elapsed_yr,
+            findings: member.process.findings(),
         };
         self.members.iter().enumerate().map(record).collect()
     }

@@ -84,4 +84,7 @@ pub struct StageRecord {
     pub seconds: f64,
     /// Years that passed in the world.
     pub elapsed_yr: f64,
+    /// What a person should know of what it met.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub findings: Vec<String>,
 }

@@ -93,6 +93,8 @@ pub struct Heightmap {
     pub height: usize,
     /// Row by row from the north, m.
     pub heights: Vec<f32>,
+    /// How many of them the file did not say.
+    pub filled: usize,
     /// Distance of two heights that the file can tell apart, m; 0 where it stores fractions.
     pub step_m: f32,
 }
@@ -202,7 +204,7 @@ pub(super) fn heights(
         return Err(Problem::Absurd(low, high));
     }
     heights.shrink_to_fit();
-    Ok(Heightmap { width: header.width, height: header.height, heights, step_m: scale.step_m as f32 })
+    Ok(Heightmap { width: header.width, height: header.height, heights, filled: 0, step_m: scale.step_m as f32 })
 }
 
 fn rewind(source: &mut Source) -> Result<(), Problem> {
