@@ -9,6 +9,8 @@ use crate::grid::{Edges, Grid, for_each_row, sum_f64};
 pub struct Tracer {
     pub velocity: [Vec<f32>; 2],
     pub value: Vec<f32>,
+    /// Room for sediment that has come to cells, m.
+    pub brought: Vec<f32>,
     guess: Vec<f32>,
 }
 
@@ -16,7 +18,7 @@ impl Tracer {
     /// Room for a raster.
     pub fn new(cells: usize) -> Self {
         let row = || vec![0.0; cells];
-        Self { velocity: [row(), row()], value: row(), guess: row() }
+        Self { velocity: [row(), row()], value: row(), brought: row(), guess: row() }
     }
 
     /// Moves `value` for `dt` seconds; a cell is dry where `wet` says no.
@@ -28,7 +30,7 @@ impl Tracer {
         wet: impl Fn(usize) -> bool + Sync,
         out: &mut [f32],
     ) {
-        let Self { velocity, value, guess } = self;
+        let Self { velocity, value, guess, .. } = self;
         let trace =
             |sign: f32| Trace { grid, velocity: [&velocity[0], &velocity[1]], span: sign * dt / grid.cell_m as f32 };
         let (back, ahead) = (trace(1.0), trace(-1.0));

@@ -4,8 +4,8 @@ use super::{
     faces::Faces,
     flow::{self, Sides, spill},
     line::{Line, close},
+    rows::{Map, cut},
     rules::{Beat, Rules},
-    sweep::Old,
 };
 use crate::grid::Edges;
 
@@ -44,7 +44,7 @@ impl Bench {
 
     /// Pushes the water over the faces to the north of row `y`.
     #[inline(always)]
-    pub fn push_north(&mut self, rules: &Rules, beat: &Beat, old: &Old, y: isize) {
+    pub fn push_north(&mut self, rules: &Rules, beat: &Beat, map: &Map, y: isize) {
         let (w, h) = (rules.width, rules.height as isize);
         let (one, two) = (&self.lines[slot(y - 1)], &self.lines[slot(y)]);
         let faces = &mut self.y[slot(y)];
@@ -58,13 +58,14 @@ impl Bench {
                 land: both(|l| &l.land),
                 sea: one.sea || two.sea,
             };
-            return faces.push(beat, rules.mei, sides, old.faces(1, rules.row(y), w));
+            return faces.push(beat, rules.mei, sides, map.old(y).faces(1));
         }
         // Over an open rim the ground goes on as it falls from the next row inwards.
-        let inner = rules.row(if y <= 0 { 1 } else { h - 2 }) * w;
+        let inner = rules.row(if y <= 0 { 1 } else { h - 2 });
+        let (start, change) = (cut(map.still.start, inner, w), map.old(inner as isize).change);
         for x in 0..w {
             let out = if rules.edges == Edges::Open && (y == 0 || y == h) {
-                let fall = old.start[inner + x] + old.change[inner + x] - two.ground[x + 1];
+                let fall = start[x] + change[x] - two.ground[x + 1];
                 spill(rules, two.depth[x + 1], fall) * two.land[x + 1]
             } else {
                 0.0
@@ -75,7 +76,7 @@ impl Bench {
 
     /// Pushes the water over the faces in row `y`, from its west end to its east end.
     #[inline(always)]
-    pub fn push_across(&mut self, rules: &Rules, beat: &Beat, old: &Old, y: isize) {
+    pub fn push_across(&mut self, rules: &Rules, beat: &Beat, map: &Map, y: isize) {
         let w = rules.width;
         let line = &self.lines[slot(y)];
         let faces = &mut self.x[slot(y)];
@@ -86,7 +87,7 @@ impl Bench {
             land: [&line.land, &line.land[1..]],
             sea: line.sea,
         };
-        faces.push(beat, rules.mei, sides, old.faces(0, rules.row(y), w));
+        faces.push(beat, rules.mei, sides, map.old(y).faces(0));
         (faces.water[w], faces.ahead[w], faces.back[w]) = (faces.water[0], faces.ahead[0], faces.back[0]);
         if rules.edges != Edges::Wrap {
             let out = |x: usize, inner: usize| {

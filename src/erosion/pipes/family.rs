@@ -7,11 +7,12 @@ use super::{
     advect::{Tracer, mend},
     bench::Bench,
     flow::hi,
-    momentum,
+    momentum::{self, Water},
     params::{Flux, PipesParams, Sediment},
+    rows::{Halo, Row, Rows, Still},
     rules::{Beat, GRAVITY, PIPE_M, Rules, SLIDE, STILL_M, sources},
     sediment::room,
-    sweep::{Book, New, Old, sweep},
+    sweep::{Book, sweep},
 };
 
 /// Rows that a band has at least: the four that it works out for its neighbours should not weigh much.
@@ -34,24 +35,15 @@ pub struct Pipes {
     /// What is too little for the bed's `change` to hold, m.
     rest: Vec<f32>,
     soft: Vec<f32>,
-    next: Next,
     tracer: Option<Tracer>,
-    /// Fluxes after momentum.
+    /// Depth a step ago, and room for fluxes, where water carries momentum.
+    past: Vec<f32>,
     carried: [Vec<f32>; 2],
     books: Vec<Book>,
-    benches: Vec<Bench>,
+    benches: Vec<(Halo, Bench)>,
     deepest: f32,
     fastest2: f32,
     substeps: u64,
-}
-
-/// Where a step is written to.
-struct Next {
-    change: Vec<f32>,
-    depth: Vec<f32>,
-    load: Vec<f32>,
-    flux: [Vec<f32>; 2],
-    back: [Vec<f32>; 2],
 }
 
 impl Pipes {
@@ -66,7 +58,7 @@ impl Pipes {
         let some = |wanted: bool| if wanted { row() } else { Vec::new() };
         let two = |wanted: bool| [some(wanted), some(wanted)];
         let mei = params.flux == Flux::Mei;
-        let soft = params.softening_per_m > 0.0;
+        let (soft, momentum) = (params.softening_per_m > 0.0, params.momentum && !mei);
         let depth = (0..cells).map(|i| hi(rules.sea_m - bed.height(i), 0.0)).collect();
         Self {
             grid,
@@ -79,9 +71,9 @@ impl Pipes {
             back: two(mei),
             rest: row(),
             soft: if soft { vec![rules.rock_softness; cells] } else { Vec::new() },
-            next: Next { change: row(), depth: row(), load: row(), flux: two(true), back: two(mei) },
             tracer: (params.sediment != Sediment::Flux).then(|| Tracer::new(cells)),
-            carried: two(params.momentum && !mei),
+            past: some(momentum),
+            carried: two(momentum),
             books: vec![Book::default(); grid.height],
             benches: Vec::new(),
             deepest: 0.0,
@@ -140,48 +132,36 @@ impl Pipes {
         let beat = self.beat(dt, raining);
         let bands = (4 * rayon::current_num_threads()).min(self.grid.height / BAND).max(1);
         if self.benches.len() != bands {
-            self.benches = (0..bands).map(|_| Bench::new(&self.rules)).collect();
+            self.benches = (0..bands).map(|_| (Halo::default(), Bench::new(&self.rules))).collect();
         }
-        let old = Old {
-            start: &bed.start,
-            change: &bed.change,
-            depth: &self.depth,
-            load: &self.load,
-            flux: [&self.flux[0], &self.flux[1]],
-            back: [&self.back[0], &self.back[1]],
-            source: &self.source,
-            rate: &bed.rate,
-        };
-        let momentum = !self.carried[0].is_empty();
-        if momentum {
-            for (axis, out) in self.carried.iter_mut().enumerate() {
-                // Where the step is written to still holds the depths of the step before.
-                momentum::carry(&self.rules, &beat, &old, &self.next.depth, axis, out);
-            }
+        if !self.past.is_empty() {
+            self.carry(bed, &beat);
         }
-        let flux = if momentum { [&self.carried[0][..], &self.carried[1][..]] } else { old.flux };
-        let next = &mut self.next;
-        let ([fx, fy], [bx, by]) = (&mut next.flux, &mut next.back);
-        let new = New {
-            change: &mut next.change,
-            depth: &mut next.depth,
-            load: &mut next.load,
+        let still = Still { start: &bed.start, source: &self.source, rate: &bed.rate };
+        let ([fx, fy], [bx, by]) = (&mut self.flux, &mut self.back);
+        let row = Row {
+            change: &mut bed.change[..],
+            depth: &mut self.depth,
+            load: &mut self.load,
             flux: [fx, fy],
             back: [bx, by],
-            rest: &mut self.rest,
-            soft: &mut self.soft,
-            books: &mut self.books,
-            benches: &mut self.benches,
         };
-        sweep(&self.rules, &beat, Old { flux, ..old }, new);
-        std::mem::swap(&mut bed.change, &mut next.change);
-        std::mem::swap(&mut self.depth, &mut next.depth);
-        std::mem::swap(&mut self.load, &mut next.load);
-        std::mem::swap(&mut self.flux, &mut next.flux);
-        std::mem::swap(&mut self.back, &mut next.back);
+        let rows = Rows { row, rest: &mut self.rest, soft: &mut self.soft, books: &mut self.books };
+        sweep(&self.rules, &beat, still, rows, &mut self.benches);
         self.trace(&beat);
         self.book(moved);
         self.substeps += 1;
+    }
+
+    /// Takes the fluxes' momentum along.
+    fn carry(&mut self, bed: &Bed, beat: &Beat) {
+        let (flux, depth) = ([&self.flux[0][..], &self.flux[1][..]], &self.depth);
+        let water = Water { start: &bed.start, change: &bed.change, depth, past: &self.past, flux };
+        for (axis, out) in self.carried.iter_mut().enumerate() {
+            momentum::carry(&self.rules, beat, water, axis, out);
+        }
+        std::mem::swap(&mut self.flux, &mut self.carried);
+        self.past.copy_from_slice(&self.depth);
     }
 
     /// Sediment by its own way, where it does not ride on the fluxes.
@@ -197,16 +177,16 @@ impl Pipes {
                 *value = if wet(i) { load[i] / depth[i] } else { 0.0 };
             }
         });
-        let out = &mut self.next.load;
-        tracer.run(&self.grid, beat.dt, self.params.sediment == Sediment::Maccormack, wet, out);
-        for_each_row(out, w, |y, row| {
+        let mut out = std::mem::take(&mut tracer.brought);
+        tracer.run(&self.grid, beat.dt, self.params.sediment == Sediment::Maccormack, wet, &mut out);
+        for_each_row(&mut out, w, |y, row| {
             for (x, out) in row.iter_mut().enumerate() {
                 let i = y * w + x;
                 *out = if wet(i) { *out * depth[i] } else { load[i] };
             }
         });
-        mend(w, load, out);
-        std::mem::swap(&mut self.load, &mut self.next.load);
+        mend(w, load, &mut out);
+        tracer.brought = std::mem::replace(&mut self.load, out);
         self.tracer = Some(tracer);
     }
 
@@ -321,8 +301,8 @@ impl Family for Pipes {
             fields.push(("back_x", self.back[0].clone()));
             fields.push(("back_y", self.back[1].clone()));
         }
-        if !self.carried[0].is_empty() {
-            fields.push(("past", self.next.depth.clone()));
+        if !self.past.is_empty() {
+            fields.push(("past", self.past.clone()));
         }
         let mut blob = self.substeps.to_le_bytes().to_vec();
         blob.extend(self.deepest.to_le_bytes());
@@ -338,8 +318,8 @@ impl Family for Pipes {
         let flux = [whole("flux_x")?, whole("flux_y")?];
         let soft = if self.soft.is_empty() { Vec::new() } else { whole("soft")? };
         let back = if self.rules.mei { [whole("back_x")?, whole("back_y")?] } else { Default::default() };
-        if !self.carried[0].is_empty() {
-            self.next.depth = whole("past")?;
+        if !self.past.is_empty() {
+            self.past = whole("past")?;
         }
         let (count, [deepest, fastest2]) = bytes.split_first_chunk::<8>().and_then(|(count, tail)| {
             let (a, tail) = tail.split_first_chunk::<4>()?;

@@ -29,24 +29,6 @@ pub fn inverse_cbrt(x: f32) -> f32 {
     r * (4.0 / 3.0 - part * (r * r * r))
 }
 
-/// `1/x` to 2e-7 for positive normal numbers below 1e37, by Newton: dividing takes the processor four times as long.
-#[inline(always)]
-pub fn inverse(x: f32) -> f32 {
-    let r = f32::from_bits(0x7ef3_11c3 - x.to_bits());
-    let r = r * (2.0 - x * r);
-    let r = r * (2.0 - x * r);
-    r * (2.0 - x * r)
-}
-
-/// `1/√x` to 5e-6 for positive normal numbers.
-#[inline(always)]
-pub fn inverse_root(x: f32) -> f32 {
-    let half = 0.5 * x;
-    let r = f32::from_bits(0x5f37_59df - (x.to_bits() >> 1));
-    let r = r * (1.5 - half * (r * r));
-    r * (1.5 - half * (r * r))
-}
-
 /// What a face needs to know about the cells at its two sides.
 #[derive(Clone, Copy)]
 pub struct Sides<'a> {
@@ -80,7 +62,8 @@ impl<'a> Sides<'a> {
     /// 0 between two cells of the sea.
     #[inline(always)]
     fn open(&self, i: usize) -> f32 {
-        hi(self.land[0][i], self.land[1][i])
+        let (a, b) = (self.land[0][i], self.land[1][i]);
+        select_unpredictable(a > b, a, b)
     }
 }
 
@@ -97,7 +80,7 @@ fn roughness(drag: f32, deep: f32) -> f32 {
 #[inline(always)]
 fn rub(y: f32, roughness: f32) -> f32 {
     let inner = 1.0 + roughness * y.abs();
-    (y + y) * inverse(1.0 + inner * inverse_root(inner))
+    (y + y) / (1.0 + inner.sqrt())
 }
 
 /// Signed fluxes over a row of faces, m²/s, positive from side 0 to side 1, from those of the step before; `rough` is room
@@ -139,7 +122,7 @@ pub fn push_apart(beat: &Beat, sides: Sides, old: [&[f32]; 2], ahead: &mut [f32]
     }
 }
 
-/// Keeps what a cell gives below what it has, however the inverse is rounded.
+/// Keeps what a cell gives below what it has, however the division is rounded.
 const LESS: f32 = 1.0 - 1e-6;
 
 /// The share of its outflow that each cell can really give; `x` are the faces of the row from west to east.
@@ -151,7 +134,7 @@ pub fn ration(pace: f32, depth: &[f32], x: &[f32], [north, south]: [&[f32]; 2], 
     for i in 0..n {
         let leaves = (hi(east[i], 0.0) + hi(-west[i], 0.0)) + (hi(south[i], 0.0) + hi(-north[i], 0.0));
         let wanted = leaves * pace;
-        out[i] = if wanted > depth[i] { depth[i] * (LESS * inverse(hi(wanted, 1e-30))) } else { 1.0 };
+        out[i] = if wanted > depth[i] { LESS * depth[i] / wanted } else { 1.0 };
     }
 }
 
@@ -163,7 +146,7 @@ pub fn ration_apart(pace: f32, depth: &[f32], ahead: [&[f32]; 2], back: [&[f32];
     let (west, north) = (&back[0][..n], &back[1][..n]);
     for i in 0..n {
         let wanted = ((east[i] + west[i]) + (south[i] + north[i])) * pace;
-        out[i] = if wanted > depth[i] { depth[i] * (LESS * inverse(hi(wanted, 1e-30))) } else { 1.0 };
+        out[i] = if wanted > depth[i] { LESS * depth[i] / wanted } else { 1.0 };
     }
 }
 

@@ -1,11 +1,13 @@
 //! A row of cells as a step begins: what its faces need to know.
 
+use std::hint::select_unpredictable;
+
 use super::{
-    flow::{hi, inverse},
+    flow::hi,
+    rows::{Row, Still, cut},
     rules::{Beat, Rules},
     sediment,
     sums::total,
-    sweep::{Old, cut},
 };
 use crate::grid::Edges;
 
@@ -33,6 +35,8 @@ pub struct Line {
     pub talus: Vec<f32>,
     /// Share of its outflow that a cell can give.
     pub share: Vec<f32>,
+    /// What the depths could hold of the rain, m; as wide as the map.
+    pub rain: Vec<f32>,
     pub sea: bool,
     pub rained: f64,
 }
@@ -52,6 +56,7 @@ impl Line {
             room: row(f32::MAX),
             talus: row(0.0),
             share: row(1.0),
+            rain: vec![0.0; width],
             sea: false,
             rained: 0.0,
         }
@@ -59,14 +64,13 @@ impl Line {
 
     /// Row `y` of the map, after the rain of this step.
     #[inline(always)]
-    pub fn load(&mut self, rules: &Rules, beat: &Beat, old: &Old, y: usize, got: &mut [f32]) {
+    pub fn load(&mut self, rules: &Rules, beat: &Beat, still: &Still, old: Row<&[f32]>, y: usize) {
         let w = rules.width;
-        let [start, change, depth] = [old.start, old.change, old.depth].map(|all| &all[y * w..][..w]);
-        let (load, source, rate) = (cut(old.load, y, w), cut(old.source, y, w), cut(old.rate, y, w));
-        let got = &mut got[..w];
+        let [start, source, rate] = [still.start, still.source, still.rate].map(|all| cut(all, y, w));
+        let got = &mut self.rain[..w];
         let heights = (&mut self.start[1..][..w], &mut self.ground[1..][..w], &mut self.wet[1..][..w]);
         let water = (&mut self.depth[1..][..w], &mut self.thick[1..][..w]);
-        let before = [start, change, depth, load];
+        let before = [start, old.change, old.depth, old.load];
         let sea = if source.is_empty() {
             gather(before, |_| beat.rain_m, rules.sea_m, got, heights.0, heights.1, heights.2, water.0, water.1)
         } else {
@@ -142,8 +146,8 @@ fn gather(
         begin[i] = start[i];
         ground[i] = z;
         wet[i] = change[i] + d;
-        let c = load[i] * inverse(hi(d, DRY_M));
-        thick[i] = if d > DRY_M { c } else { 0.0 };
+        let c = load[i] / hi(d, DRY_M);
+        thick[i] = select_unpredictable(d > DRY_M, c, 0.0);
         under |= u32::from(z < sea_m);
     }
     under > 0

@@ -47,6 +47,7 @@ mod line;
 mod momentum;
 mod params;
 mod process;
+mod rows;
 mod rules;
 mod sea;
 mod sediment;

@@ -7,16 +7,25 @@ use crate::grid::{Edges, for_each_row};
 use super::{
     flow::{Sides, hi, lo},
     rules::{Beat, PIPE_M, Rules},
-    sweep::Old,
 };
+
+/// Water on the map before a step.
+#[derive(Clone, Copy)]
+pub struct Water<'a> {
+    pub start: &'a [f32],
+    pub change: &'a [f32],
+    pub depth: &'a [f32],
+    /// Depth a step ago, which the fluxes went with.
+    pub past: &'a [f32],
+    /// Signed fluxes at the west and north faces of cells.
+    pub flux: [&'a [f32]; 2],
+}
 
 /// The map's faces, for any place of a raster that may wrap.
 struct Faces<'a> {
     rules: &'a Rules,
     beat: &'a Beat,
-    old: &'a Old<'a>,
-    /// Depth a step ago, which the fluxes went with.
-    past: &'a [f32],
+    old: Water<'a>,
 }
 
 impl Faces<'_> {
@@ -62,7 +71,7 @@ impl Faces<'_> {
     #[inline]
     fn speed(&self, axis: usize, x: isize, y: isize, here: f32) -> f32 {
         let Some([one, two]) = self.sides(axis, x, y) else { return here };
-        let u = self.old.flux[axis][two] / self.deep(self.past, one, two);
+        let u = self.old.flux[axis][two] / self.deep(self.old.past, one, two);
         hi(lo(u, self.beat.fastest), -self.beat.fastest)
     }
 
@@ -91,9 +100,9 @@ impl Faces<'_> {
     }
 }
 
-/// Writes the fluxes with the momentum of a step, along `axis`; `past` is the depth that the old ones went with.
-pub fn carry(rules: &Rules, beat: &Beat, old: &Old, past: &[f32], axis: usize, out: &mut [f32]) {
-    let faces = Faces { rules, beat, old, past };
+/// Writes the fluxes with the momentum of a step, along `axis`.
+pub fn carry(rules: &Rules, beat: &Beat, old: Water, axis: usize, out: &mut [f32]) {
+    let faces = Faces { rules, beat, old };
     for_each_row(out, rules.width, |y, row| {
         for (x, out) in row.iter_mut().enumerate() {
             *out = faces.carried(axis, x as isize, y as isize);

@@ -22,14 +22,13 @@ pub fn drop(rules: &Rules, line: &Line, bed: &mut [f32], load: &mut [f32]) {
 }
 
 /// Sets the sea's cells to its level; gives the water that went into it, m, or nothing where there is no sea. `came` is
-/// what fluxes brought to a cell, m, `old` its depth before the rain, `dried` what then dried up,
-/// `made` what rounding added.
+/// what fluxes brought to a cell, m, `dried` what then dried up, `made` what rounding added.
 #[inline(always)]
 pub fn level(
     rules: &Rules,
     line: &Line,
     [start, change]: [&[f32]; 2],
-    [old, dried, made]: [&[f32]; 3],
+    [dried, made]: [&[f32]; 2],
     came: impl Fn(usize) -> f32,
     depth: &mut [f32],
 ) -> Option<f64> {
@@ -47,7 +46,7 @@ pub fn level(
     for i in 0..change.len() {
         if line.land[i + 1] == 0.0 {
             // From the parts: their sum is lost in a depth of kilometres.
-            drowned += (line.depth[i + 1] - old[i]) as f64 + came(i) as f64 + made[i] as f64 - dried[i] as f64;
+            drowned += line.rain[i] as f64 + came(i) as f64 + made[i] as f64 - dried[i] as f64;
             depth[i] = 0.0;
         }
         if under(i) {

@@ -1,7 +1,9 @@
 //! What water does to a row of cells: its depth, what it carries, what it takes from the bed and lays down.
 
+use std::hint::select_unpredictable;
+
 use super::{
-    flow::{hi, inverse, inverse_root, lo},
+    flow::{hi, lo},
     rules::{BUMP, Beat, Rules, SHEET_M, STILL_M, STRIDE, THICKEST, TIMID},
 };
 
@@ -12,8 +14,6 @@ pub struct Before<'a> {
     pub depth: &'a [f32],
     /// Share of exchange that cells have; none in the sea.
     pub act: &'a [f32],
-    /// Sediment, m.
-    pub load: &'a [f32],
     /// Faces from west to east, of water and of sediment.
     pub x: [&'a [f32]; 2],
     pub north: [&'a [f32]; 2],
@@ -65,17 +65,16 @@ pub fn run(
         let d1 = depth[i];
         let came = beat.pace * ((qw[i] - qe[i]) + (qn[i] - qs[i]));
         let d2 = hi(d1 + came, 0.0);
-        let per_depth = inverse(hi(0.5 * (d1 + d2), STILL_M));
+        let per_depth = 1.0 / hi(0.5 * (d1 + d2), STILL_M);
         // Squares before the mean: where a stream turns, each face has half of it, and it is as fast as where it is straight.
         let through2 = (qw[i] * qw[i] + qe[i] * qe[i]) + (qn[i] * qn[i] + qs[i] * qs[i]);
         let v2 = lo(0.5 * through2 * (per_depth * per_depth), fastest2);
         let (u, v) = (0.5 * (qw[i] + qe[i]) * per_depth, 0.5 * (qn[i] + qs[i]) * per_depth);
         let (gx, gy) = (slopes * (east[i] - west[i]), slopes * (south[i] - north[i]));
         let g2 = gx * gx + gy * gy;
-        let sine2 = hi(1.0 - inverse(1.0 + g2), rules.tilt2);
+        let sine2 = hi(g2 / (1.0 + g2), rules.tilt2);
         let deep = ramp(d2 * rules.per_film) * (1.0 - ramp((d2 - rules.shallow_m) * rules.per_deep));
-        let force2 = v2 * sine2;
-        let thick = lo(rules.capacity * deep * (force2 * inverse_root(hi(force2, 1e-30))), THICKEST);
+        let thick = lo(rules.capacity * deep * (v2 * sine2).sqrt(), THICKEST);
         able[i] = thick * d2;
         let left = hi(d2 - beat.dry_m, 0.0);
         new_depth[i] = left;
@@ -95,49 +94,51 @@ pub fn exchange(
     before: &Before,
     able: &[f32],
     soft: &[f32],
-    new_load: &mut [f32],
+    load: &mut [f32],
     bed: &mut [f32],
 ) {
     let n = bed.len();
     let [north, here, south] = before.ground;
     let (west, east) = (&here[..n], &here[2..][..n]);
     let (north, here, south) = (&north[1..][..n], &here[1..][..n], &south[1..][..n]);
-    let (able, soft, act, load) = (&able[..n], &soft[..n], &before.act[1..][..n], &before.load[..n]);
+    let (able, soft, act, load) = (&able[..n], &soft[..n], &before.act[1..][..n], &mut load[..n]);
     let (sw, se, sn, ss) = (&before.x[1][..n], &before.x[1][1..][..n], &before.north[1][..n], &before.south[1][..n]);
-    let new_load = &mut new_load[..n];
     let (stride_m, bump_m, per_factor) = (STRIDE * rules.cell_m, BUMP * rules.cell_m, 1.0 / rules.factor);
-    let locked = if rules.locked { 0.25 } else { f32::MAX };
+    let free = |z: f32| if rules.locked { 0.25 * room(rules, z) } else { f32::MAX };
     for i in 0..n {
         let brought = beat.pace * ((sw[i] - se[i]) + (sn[i] - ss[i]));
-        let carried = hi(load[i] + brought, 0.0);
+        let had = load[i];
+        let carried = hi(had + brought, 0.0);
         let lack = able[i] - carried;
-        let share = if lack > 0.0 { beat.dissolve * soft[i] } else { beat.settle };
+        // Not an `if`: a softness that is only read where it is needed is slow to read.
+        let share = select_unpredictable(lack > 0.0, beat.dissolve * soft[i], beat.settle);
         let (z, w, e, n, s) = (here[i], west[i], east[i], north[i], south[i]);
         let low = lo(lo(w, e), lo(n, s));
         let mean = 0.25 * ((w + e) + (n + s));
-        let most = lo(stride_m, locked * room(rules, z));
+        let most = lo(stride_m, free(z));
         let dig = lo(TIMID * hi(z - low, 0.0), most);
         let fill = lo(TIMID * hi(mean - z + bump_m, 0.0), most);
         let worn = hi(lo(rules.factor * (share * act[i] * lack), dig), -fill);
         let worn = hi(worn, -rules.factor * carried);
-        new_load[i] = hi(carried + worn * per_factor, 0.0);
+        load[i] = hi(carried + worn * per_factor, 0.0);
         // Of the bed comes what the load really gained besides what fluxes brought, rounding and all.
-        bed[i] = -rules.factor * ((new_load[i] - load[i]) - brought);
+        bed[i] = -rules.factor * ((load[i] - had) - brought);
     }
 }
 
 /// Adds to a bed what it is to get; `rest` keeps what is too small for the sum. Softness follows.
 #[inline(always)]
-pub fn lay(old: &[f32], bed: &[f32], new: &mut [f32], rest: &mut [f32]) {
-    let n = new.len();
-    let (old, bed, rest) = (&old[..n], &bed[..n], &mut rest[..n]);
+pub fn lay(bed: &[f32], change: &mut [f32], rest: &mut [f32]) {
+    let n = change.len();
+    let (bed, rest) = (&bed[..n], &mut rest[..n]);
     for i in 0..n {
         // Knuth's two-sum: the sum and what rounding took from it.
         let add = bed[i] + rest[i];
-        let sum = old[i] + add;
-        let back = sum - old[i];
-        rest[i] = (old[i] - (sum - back)) + (add - back);
-        new[i] = sum;
+        let old = change[i];
+        let sum = old + add;
+        let back = sum - old;
+        rest[i] = (old - (sum - back)) + (add - back);
+        change[i] = sum;
     }
 }
 
