@@ -17,7 +17,7 @@ mod transposed;
 
 pub use blur::blur;
 pub use contour::{Contour, contour_lines, contour_rings};
-pub use distance::{Nearest, nearest_feature};
+pub use distance::{Nearest, nearest_feature, nearest_from, nearest_within};
 pub use field::Field;
 pub use parallel::{for_each_row, map_cells, max_rows, sum_f64, sum_rows};
 pub(crate) use resample::keys;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::{
     crust,
-    grid::{Corners, Field, Grid, blur, cubic, for_each_row, linear, nearest_feature},
+    grid::{Corners, Field, Grid, blur, cubic, for_each_row, linear, nearest_feature, nearest_from, nearest_within},
     noise::{Fbm, Gullies, Key, Octaves, Sampler, smoothstep},
     world::Layer,
 };
@@ -251,12 +251,12 @@ impl Surface {
 fn ground(run: &Simulation) -> (Vec<u8>, Vec<Rock>) {
     let n = run.domain.cells;
     let top = &run.owners.top;
-    let nearest = nearest_feature(run.domain.grid(), |i| top[i] != NONE);
     let cells: Vec<(u8, Rock)> = (0..n * n)
         .into_par_iter()
         .map(|i| {
-            let from = if top[i] != NONE { i } else { nearest.index.data[i] as usize };
-            let owner = top.get(from).copied().unwrap_or(0);
+            let owned = |i: usize| top[i] != NONE;
+            let from = if owned(i) { i } else { nearest_from(run.domain.grid(), i, owned).unwrap_or(i) };
+            let owner = if owned(from) { top[from] } else { 0 };
             let at_m = run.domain.cell_center_m(i % n, i / n);
             let plate = &run.plates[owner as usize];
             let time = run.time_myr as f32;
@@ -294,7 +294,7 @@ fn profiles(
             continue;
         }
         let reach_m = reach_m(meeting, belt_m);
-        let near = nearest_feature(grid, |i| at[i] != NOWHERE);
+        let near = nearest_within(grid, reach_m, |i| at[i] != NOWHERE);
         for_each_row(&mut shape.data, grid.width, |y, row| {
             for (x, value) in row.iter_mut().enumerate() {
                 let i = grid.index(x, y);
