@@ -5,6 +5,8 @@
 //!
 //! Sources: Turcotte and Schubert, *Geodynamics*; Parsons and Sclater 1977 for the depth of the sea floor.
 
+use std::sync::LazyLock;
+
 /// Density of the mantle, kg/m³.
 pub const MANTLE: f64 = 3300.0;
 /// Density of continental crust, kg/m³.
@@ -20,6 +22,10 @@ pub const REFERENCE_THICKNESS_M: f64 = 35_000.0;
 pub const REFERENCE_HEIGHT_M: f64 = 840.0;
 /// Thickness of oceanic crust, m.
 pub const OCEAN_THICKNESS_M: f64 = 7_000.0;
+
+/// Shift of the plate model of [`sea_floor_depth_m`]; an exponential is dear.
+static SHIFT_M: LazyLock<f64> =
+    LazyLock::new(|| 2500.0 + 350.0 * 70f64.sqrt() - (6400.0 - 3200.0 * libm::exp(-70.0 / 62.8)));
 
 /// Density of crust that is continental to the share `kind`, kg/m³.
 pub fn density(kind: f64) -> f64 {
@@ -49,8 +55,7 @@ pub fn sea_floor_depth_m(age_myr: f64) -> f64 {
         2500.0 + 350.0 * age.sqrt()
     } else {
         // Parsons and Sclater's 6400 - 3200·exp(-t/62.8), shifted by 30 m to meet the root at 70 My.
-        let plate = |t: f64| 6400.0 - 3200.0 * libm::exp(-t / 62.8);
-        plate(age) + (2500.0 + 350.0 * 70f64.sqrt() - plate(70.0))
+        6400.0 - 3200.0 * libm::exp(-age / 62.8) + *SHIFT_M
     }
 }
 

@@ -70,9 +70,9 @@ impl Rock {
 
     /// Speed of thickening now, m/My: what was noted has faded since.
     pub fn rate_at(&self, time_myr: f32) -> f32 {
-        // Most ground was never thickened, and an exponential is dear.
-        if self.rate_m_per_myr == 0.0 {
-            return 0.0;
+        // Most ground was never thickened, the rest mostly just now, and an exponential is dear.
+        if self.rate_m_per_myr == 0.0 || self.rated_myr == time_myr {
+            return self.rate_m_per_myr;
         }
         self.rate_m_per_myr * libm::expf((self.rated_myr - time_myr) / RATE_MEMORY_MYR)
     }

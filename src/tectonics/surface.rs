@@ -94,7 +94,9 @@ impl Surface {
         let height = Field::from_fn(grid, |x, y| {
             let i = grid.index(x, y);
             let bent = stiff.data[i] - base.data[i];
-            let free = libm::expf(-rock[i].added_m / STRENGTH_M);
+            // Most ground was never thickened, and an exponential is dear.
+            let added_m = rock[i].added_m;
+            let free = if added_m == 0.0 { 1.0 } else { libm::expf(-added_m / STRENGTH_M) };
             base.data[i] + bent * free + shapes.data[i] + mountain.data[i]
         });
         let time = run.time_myr as f32;
