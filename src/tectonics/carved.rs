@@ -317,8 +317,13 @@ impl Simulation {
     pub fn wear(&mut self, wear: &Field<f32>) {
         let area = self.domain.cell_m() * self.domain.cell_m();
         for (p, plate) in self.plates.iter_mut().enumerate() {
-            for cell in (0..plate.owned.len()).filter(|&cell| plate.owned[cell]).collect::<Vec<_>>() {
-                let under = cell_index(&self.domain, plate.center_m(cell));
+            let ([xs, ys], width) = (plate.span(), plate.frame.width);
+            for (x, y) in ys.flat_map(|y| xs.clone().map(move |x| (x, y))) {
+                let cell = y * width + x;
+                if !plate.owned[cell] {
+                    continue;
+                }
+                let under = cell_index(&self.domain, plate.pose.to_map(plate.frame.middle_m(x, y)));
                 let Some(under) = under.filter(|&under| self.owners.top[under] as usize == p) else { continue };
                 let rock = &mut plate.rock[cell];
                 let (old, most) = (rock.worn_m, rock.crust_m + rock.added_m - raise::THINNEST_M);

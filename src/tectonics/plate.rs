@@ -22,13 +22,23 @@ pub struct Frame {
 impl Frame {
     /// Body coordinates of a cell's centre, m.
     pub fn center_m(&self, index: usize) -> DVec2 {
-        let (i, j) = (index % self.width, index / self.width);
+        self.middle_m(index % self.width, index / self.width)
+    }
+
+    /// Body coordinates of the centre of the cell in a column and a row, m.
+    pub fn middle_m(&self, i: usize, j: usize) -> DVec2 {
         self.corner_m + DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * self.cell_m
     }
 
     /// Body coordinates to cell units.
     pub fn to_cells(self, body: DVec2) -> DVec2 {
         (body - self.corner_m) / self.cell_m
+    }
+
+    /// The cell of a column and a row.
+    fn cell(&self, x: i64, y: i64) -> Option<usize> {
+        let inside = (x as u64) < self.width as u64 && (y as u64) < self.height as u64;
+        inside.then(|| y as usize * self.width + x as usize)
     }
 
     /// The cell that holds a point in cell units.
@@ -179,16 +189,16 @@ impl Plate {
     /// Rock between cell centres, from the owned ones of the four around; `None` where none is owned.
     pub fn sample(&self, at_m: DVec2, time_myr: f32) -> Option<Rock> {
         let at = self.frame.to_cells(self.pose.to_body(at_m)) - 0.5;
-        let (base, f) = (at.floor(), at - at.floor());
+        let base = at.floor();
+        let f = at - base;
         let mut sum = [0.0f64; 7];
         let mut weight = 0.0;
-        for (dx, dy, w) in [
-            (0.0, 0.0, (1.0 - f.x) * (1.0 - f.y)),
-            (1.0, 0.0, f.x * (1.0 - f.y)),
-            (0.0, 1.0, (1.0 - f.x) * f.y),
-            (1.0, 1.0, f.x * f.y),
-        ] {
-            let Some(i) = self.frame.cell_at(base + DVec2::new(dx, dy)).filter(|&i| self.owned[i]) else { continue };
+        let (x, y) = (base.x as i64, base.y as i64);
+        for (dx, dy, w) in
+            [(0, 0, (1.0 - f.x) * (1.0 - f.y)), (1, 0, f.x * (1.0 - f.y)), (0, 1, (1.0 - f.x) * f.y), (1, 1, f.x * f.y)]
+        {
+            let cell = self.frame.cell(x.saturating_add(dx), y.saturating_add(dy));
+            let Some(i) = cell.filter(|&i| self.owned[i]) else { continue };
             let r = &self.rock[i];
             for (s, v) in sum.iter_mut().zip([
                 r.crust_m,
