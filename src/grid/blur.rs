@@ -13,9 +13,9 @@ pub fn blur(field: &Field<f32>, sigma_px: f64) -> Field<f32> {
     let (w, h) = (field.grid.width, field.grid.height);
     let wrap = field.grid.edges == Edges::Wrap;
     let boxes = Boxes::new(sigma_px);
-    let along = boxes.down_and_turn(&transposed(&field.data, w, h), [h, w], wrap);
-    let both = boxes.down_and_turn(&along, [w, h], wrap);
-    Field { grid: field.grid, data: transposed(&both, h, w) }
+    let along = boxes.across(&field.data, w, wrap);
+    let turned = boxes.down_and_turn(&along, [w, h], wrap);
+    Field { grid: field.grid, data: transposed(&turned, h, w) }
 }
 
 /// A box of `2·radius + 1` cells and the share `edge` of one more on either side, three times over.
@@ -33,6 +33,23 @@ impl Boxes {
         Self { radius: r as usize, edge, total: 2.0 * r + 1.0 + 2.0 * edge }
     }
 
+    /// Smooths along the rows, a strip of them turned into columns at a time.
+    fn across(&self, data: &[f32], w: usize, wrap: bool) -> Vec<f32> {
+        let mut out = vec![0.0; data.len()];
+        let room = || [vec![[0.0f32; STRIP]; w], vec![[0.0f32; STRIP]; w]];
+        let strips = out.par_chunks_mut((STRIP * w).max(1)).zip(data.par_chunks((STRIP * w).max(1)));
+        strips.for_each_init(room, |[strip, other], (to, rows)| {
+            for (i, row) in rows.chunks_exact(w).enumerate() {
+                strip.iter_mut().zip(row).for_each(|(column, &v)| column[i] = v);
+            }
+            self.thrice(strip, other, wrap);
+            for (i, row) in to.chunks_exact_mut(w).enumerate() {
+                row.iter_mut().zip(other.iter()).for_each(|(to, column)| *to = column[i]);
+            }
+        });
+        out
+    }
+
     /// Smooths down the columns; rows become columns.
     fn down_and_turn(&self, data: &[f32], [w, h]: [usize; 2], wrap: bool) -> Vec<f32> {
         let mut out = vec![0.0; data.len()];
@@ -42,14 +59,19 @@ impl Boxes {
             for (y, row) in strip.iter_mut().enumerate() {
                 row[..wide].copy_from_slice(&data[y * w + block * STRIP..][..wide]);
             }
-            down(self, strip, other, wrap);
-            down(self, other, strip, wrap);
-            down(self, strip, other, wrap);
+            self.thrice(strip, other, wrap);
             for (i, column) in columns.chunks_exact_mut(h).enumerate() {
                 column.iter_mut().zip(other.iter()).for_each(|(to, row)| *to = row[i]);
             }
         });
         out
+    }
+
+    /// Smooths a strip down, from one room to the other.
+    fn thrice(&self, strip: &mut [[f32; STRIP]], other: &mut [[f32; STRIP]], wrap: bool) {
+        down(self, strip, other, wrap);
+        down(self, other, strip, wrap);
+        down(self, strip, other, wrap);
     }
 }
 
