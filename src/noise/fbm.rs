@@ -128,7 +128,12 @@ impl Octave {
 
     #[inline(always)]
     fn noise_and_slope(&self, basis: Basis, at_m: [f64; 2]) -> (f64, [f64; 2]) {
-        let (n, [gx, gy]) = basis.at(self.seed, self.place(at_m));
+        self.turned(basis.at(self.seed, self.place(at_m)))
+    }
+
+    /// Turns a slope back onto the map.
+    #[inline(always)]
+    fn turned(&self, (n, [gx, gy]): (f64, [f64; 2])) -> (f64, [f64; 2]) {
         let [c, s] = self.turn;
         (n, [c * gx + s * gy, c * gy - s * gx])
     }
@@ -158,9 +163,13 @@ impl Octaves {
 
     /// The sum and its gradient per metre.
     pub fn gradient(&self, at_m: [f64; 2]) -> (f64, [f64; 2]) {
+        self.sum_with_slope(self.octaves.iter().map(|octave| (octave, octave.noise_and_slope(self.basis, at_m))))
+    }
+
+    #[inline(always)]
+    fn sum_with_slope<'a>(&self, parts: impl Iterator<Item = (&'a Octave, (f64, [f64; 2]))>) -> (f64, [f64; 2]) {
         let (mut value, mut slope) = (0.0, [0.0, 0.0]);
-        for octave in &self.octaves {
-            let (n, g) = octave.noise_and_slope(self.basis, at_m);
+        for (octave, (n, g)) in parts {
             let weight = octave.weight * octave.share;
             value += weight * n;
             slope[0] += weight * g[0];
@@ -198,6 +207,18 @@ impl Sampler<'_> {
         self.octaves(at_m).map(|(octave, noise)| octave.weight * octave.share * noise).sum::<f64>() * self.sum.scale
     }
 
+    /// [`Octaves::gradient`].
+    #[inline]
+    pub fn gradient(&mut self, at_m: [f64; 2]) -> (f64, [f64; 2]) {
+        if self.sum.basis != Basis::Gradient {
+            return self.sum.gradient(at_m);
+        }
+        let parts = self.sum.octaves.iter().zip(&mut self.squares);
+        self.sum.sum_with_slope(
+            parts.map(|(octave, square)| (octave, octave.turned(square.read(octave.seed, octave.place(at_m))))),
+        )
+    }
+
     /// Sum of the weights of the whole series.
     pub(super) fn total(&self) -> f64 {
         self.sum.total
@@ -209,7 +230,7 @@ impl Sampler<'_> {
         let basis = self.sum.basis;
         self.sum.octaves.iter().zip(&mut self.squares).map(move |(octave, square)| {
             let noise = match basis {
-                Basis::Gradient => square.value(octave.seed, octave.place(at_m)),
+                Basis::Gradient => square.read(octave.seed, octave.place(at_m)).0,
                 other => octave.noise(other, at_m),
             };
             (octave, noise)
@@ -257,6 +278,7 @@ mod tests {
                 let start = stream.between(-1e4, 1e4);
                 let at = [if i % 3 == 0 { start } else { i as f64 * 11.0 }, 77.0];
                 assert_eq!(sampler.value(at).to_bits(), sum.value(at).to_bits());
+                assert_eq!(sampler.gradient(at), sum.gradient(at));
             }
         }
     }

@@ -197,14 +197,14 @@ impl Square {
         seed.square(0, 0)
     }
 
-    /// Gradient noise at a point, from this square or the one that it then becomes.
+    /// Gradient noise at a point and its derivatives, from this square or the one that it then becomes.
     #[inline(always)]
-    pub(super) fn value(&mut self, seed: Seed, at: [f64; 2]) -> f64 {
+    pub(super) fn read(&mut self, seed: Seed, at: [f64; 2]) -> (f64, [f64; 2]) {
         let ((ix, fx), (iy, fy)) = (split(at[0]), split(at[1]));
         if self.at != (ix, iy) {
             *self = seed.square(ix, iy);
         }
-        self.gradient(fx, fy).0
+        self.gradient(fx, fy)
     }
 
     #[inline(always)]

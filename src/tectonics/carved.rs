@@ -22,7 +22,7 @@ use super::{
     raise,
     simulation::Simulation,
     surface::{Plains, Surface},
-    warp::Warp,
+    warp::{Reader, Warp},
 };
 
 /// Width over which the strength of the lithosphere spreads the answer to a load, m: the standard deviation that comes
@@ -301,11 +301,21 @@ fn unread(under: &[u32], domain: &Domain, warp: &Warp) -> Vec<(usize, DVec2)> {
     for &cell in under.iter().filter(|&&cell| cell != OUTSIDE) {
         read[cell as usize] = true;
     }
-    let shown = |cell: usize| {
-        let at_m = warp.shown_at(domain.cell_center_m(cell % domain.cells, cell / domain.cells));
+    let [low, high] = warp.reads_m();
+    let shown = |reader: &mut Reader, cell: usize| {
+        let center_m = domain.cell_center_m(cell % domain.cells, cell / domain.cells);
+        if center_m.cmplt(low).any() || center_m.cmpgt(high).any() {
+            return None;
+        }
+        let at_m = reader.shown_at(center_m);
         domain.on_map(at_m).then_some((cell, at_m))
     };
-    (0..read.len()).into_par_iter().filter(|&cell| !read[cell]).filter_map(shown).collect()
+    let row = |y: usize| {
+        let mut reader = warp.reader();
+        let cells = (y * domain.cells..(y + 1) * domain.cells).filter(|&cell| !read[cell]);
+        cells.filter_map(|cell| shown(&mut reader, cell)).collect::<Vec<_>>()
+    };
+    (0..domain.cells).into_par_iter().flat_map_iter(row).collect()
 }
 
 fn poses(run: &Simulation) -> Vec<Pose> {

@@ -8,7 +8,7 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::noise::{Fbm, Key, Octaves};
+use crate::noise::{Fbm, Key, Octaves, Sampler};
 
 /// Wavelength of each link as a share of the map's longer side, and its displacement as a share of the bend asked for.
 const LINKS: [(f64, f64); 6] = [(0.85, 1.0), (0.36, 0.42), (0.15, 0.16), (0.06, 0.08), (0.026, 0.045), (0.011, 0.02)];
@@ -16,11 +16,15 @@ const LINKS: [(f64, f64); 6] = [(0.85, 1.0), (0.36, 0.42), (0.15, 0.16), (0.06, 
 const LEAST_DETERMINANT: f64 = 0.4;
 /// Points in a link's wavelength at which folding is looked for.
 const PROBES: f64 = 6.0;
+/// Parts of each side of the map in which its rim is looked at.
+const RIM_PROBES: usize = 512;
 
 /// A fold-free displacement of the plane.
 #[derive(Clone, Debug)]
 pub struct Warp {
     links: Vec<Link>,
+    /// Corners of a box around all that the map reads, m.
+    reads_m: [DVec2; 2],
 }
 
 #[derive(Clone, Debug)]
@@ -54,9 +58,8 @@ impl Link {
         link
     }
 
-    fn apply(&self, at_m: DVec2) -> (DVec2, Rows) {
-        let (x, gx) = self.parts[0].gradient(at_m.into());
-        let (y, gy) = self.parts[1].gradient(at_m.into());
+    /// Where the link leads, and its Jacobian, from the noise and the slope of its two parts.
+    fn apply(&self, at_m: DVec2, [(x, gx), (y, gy)]: [(f64, [f64; 2]); 2]) -> (DVec2, Rows) {
         (at_m + self.amplitude_m * DVec2::new(x, y), rows(&[gx.into(), gy.into()], self.amplitude_m))
     }
 }
@@ -76,7 +79,26 @@ impl Warp {
         let links = LINKS.iter().enumerate().map(|(i, (wavelength, share))| {
             Link::new(map_m, wavelength * side, share * bend * side, key.with(i as u64))
         });
-        Self { links: if bend > 0.0 { links.collect() } else { Vec::new() } }
+        let mut warp = Self { links: if bend > 0.0 { links.collect() } else { Vec::new() }, reads_m: [DVec2::ZERO; 2] };
+        warp.reads_m = warp.box_around_rim(map_m);
+        warp
+    }
+
+    /// A box around what the map's rim reads holds what lies inside too: nothing folds.
+    fn box_around_rim(&self, map_m: DVec2) -> [DVec2; 2] {
+        let spot = |i: usize| i as f64 / RIM_PROBES as f64;
+        let sides = |t: f64| [DVec2::new(t, 0.0), DVec2::new(t, 1.0), DVec2::new(0.0, t), DVec2::new(1.0, t)];
+        let rim = (0..=RIM_PROBES).flat_map(|i| sides(spot(i))).map(|share| self.read_at(share * map_m));
+        let (low, high) =
+            rim.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
+        // Between two probes the rim bulges out by no more than its stretching allows; it's never stretched eightfold.
+        let bulge = 4.0 * map_m.max_element() / RIM_PROBES as f64;
+        [low - bulge, high + bulge]
+    }
+
+    /// Corners of a box around all that the map reads of the plates, m.
+    pub fn reads_m(&self) -> [DVec2; 2] {
+        self.reads_m
     }
 
     /// Where the map at `at_m` reads the plates.
@@ -90,14 +112,41 @@ impl Warp {
     /// `read_at` and its Jacobian's rows.
     pub fn read_with_jacobian(&self, at_m: DVec2) -> (DVec2, Rows) {
         self.links.iter().fold((at_m, [DVec2::X, DVec2::Y]), |(at, before), link| {
-            let (next, own) = link.apply(at);
-            // Chain rule: the link's own Jacobian times that of the links before it.
-            (next, own.map(|row| row.x * before[0] + row.y * before[1]))
+            chained(link.apply(at, [0, 1].map(|k| link.parts[k].gradient(at.into()))), before)
+        })
+    }
+
+    /// A reader for many places one near the other.
+    pub fn reader(&self) -> Reader<'_> {
+        Reader { links: self.links.iter().map(|link| (link, [0, 1].map(|k| link.parts[k].sampler()))).collect() }
+    }
+
+    /// [`Reader::shown_at`] for a single place.
+    pub fn shown_at(&self, q_m: DVec2) -> DVec2 {
+        self.reader().shown_at(q_m)
+    }
+}
+
+/// Chain rule: a link's own Jacobian times that of the links before it.
+fn chained((at, own): (DVec2, Rows), before: Rows) -> (DVec2, Rows) {
+    (at, own.map(|row| row.x * before[0] + row.y * before[1]))
+}
+
+/// Reads a warp at many places, faster where they lie close to each other.
+pub struct Reader<'a> {
+    links: Vec<(&'a Link, [Sampler<'a>; 2])>,
+}
+
+impl Reader<'_> {
+    /// [`Warp::read_with_jacobian`], bit for bit.
+    fn read_with_jacobian(&mut self, at_m: DVec2) -> (DVec2, Rows) {
+        self.links.iter_mut().fold((at_m, [DVec2::X, DVec2::Y]), |(at, before), (link, [east, south])| {
+            chained(link.apply(at, [east.gradient(at.into()), south.gradient(at.into())]), before)
         })
     }
 
     /// The map point that reads a point of the plates; Newton's method, good to a metre.
-    pub fn shown_at(&self, q_m: DVec2) -> DVec2 {
+    pub fn shown_at(&mut self, q_m: DVec2) -> DVec2 {
         let mut p = q_m;
         for _ in 0..30 {
             let (at, rows) = self.read_with_jacobian(p);
@@ -122,13 +171,17 @@ mod tests {
         for seed in 0..12 {
             let map = DVec2::new(1_000e3, 700e3);
             let warp = Warp::new(map, 0.2, Key::new(seed));
-            let mut stream = Key::new(seed).stream();
+            let (mut stream, mut reader) = (Key::new(seed).stream(), warp.reader());
             for _ in 0..3000 {
                 let p = DVec2::new(stream.unit(), stream.unit()) * map;
                 let (q, rows) = warp.read_with_jacobian(p);
                 assert!(determinant(&rows) > 0.0, "seed {seed} folds at {p}");
                 assert_eq!(q, warp.read_at(p));
+                assert_eq!((q, rows), reader.read_with_jacobian(p));
             }
+            let [low, high] = warp.reads_m();
+            let all = (0..=60).flat_map(|j| (0..=60).map(move |i| DVec2::new(i as f64, j as f64) / 60.0 * map));
+            assert!(all.map(|p| warp.read_at(p)).all(|q| q.cmpge(low).all() && q.cmple(high).all()), "seed {seed}");
             let p = map * 0.4;
             assert!((warp.shown_at(warp.read_at(p)) - p).length() < 20.0);
         }
