@@ -225,12 +225,28 @@ impl Plate {
         let frame = &self.frame;
         let outline: Vec<[f64; 2]> =
             mosaic.outline.iter().map(|&v| frame.to_cells(self.pose.to_body(v.into())).into()).collect();
+        if !self.owns_any_around(&outline) {
+            return;
+        }
         brush.cover(&outline, frame.width, frame.height, |x, y, coverage| {
             let index = y * frame.width + x;
             if self.owned[index] {
                 put(index, f64::from(coverage));
             }
         });
+    }
+
+    /// Whether a cell in the box around an outline is owned: looking is cheaper than covering.
+    fn owns_any_around(&self, outline: &[[f64; 2]]) -> bool {
+        let [xs, ys] = [0, 1].map(|axis| {
+            let (low, high) = outline
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (v[axis].min(low), v[axis].max(high)));
+            let span = &self.span[axis];
+            (low.max(0.0) as usize).max(span[0])..(high.max(0.0).ceil() as usize).min(span[1])
+        });
+        let mut rows = ys.map(|y| y * self.frame.width);
+        !xs.is_empty() && rows.any(|row| self.owned[row + xs.start..row + xs.end].contains(&true))
     }
 
     /// Volume of its crust, m³.
