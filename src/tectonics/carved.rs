@@ -23,6 +23,7 @@ use super::{
     simulation::Simulation,
     surface::{Plains, Surface},
     warp::{Reader, Warp},
+    window::Window,
 };
 
 /// Width over which the strength of the lithosphere spreads the answer to a load, m: the standard deviation that comes
@@ -71,6 +72,7 @@ struct Ground {
 
 /// Where the plates were before a step, and where they are.
 struct Motion<'a> {
+    domain: &'a Domain,
     now: &'a Surface,
     /// Of each plate, from where it is to where it was.
     back: Vec<Back>,
@@ -99,13 +101,19 @@ impl Back {
 
 impl Carved {
     /// The map as it is before the plates move, and its heights, m.
-    pub fn begin(run: &Simulation, warp: &Warp, params: &PlatesParams, map: Grid, plains: &Plains) -> Self {
+    pub fn begin(
+        run: &Simulation,
+        (warp, window): (&Warp, Window),
+        params: &PlatesParams,
+        map: Grid,
+        plains: &Plains,
+    ) -> Self {
         let reads = Field::from_fn(map, |x, y| {
             let at = warp.read_at(map.center_m(x, y).into());
             [at.x as f32, at.y as f32]
         });
         let reads_m = [0, 1].map(|axis| reads.map(|at| at[axis]));
-        let surface = Surface::of(run, params);
+        let surface = Surface::of(run, params, window);
         let under = under(&reads_m, &run.domain);
         let unread = unread(&under, &run.domain, warp);
         let expected = Field::filled(map, 0.0);
@@ -141,7 +149,7 @@ impl Carved {
 
     /// Takes up a saved run, replayed up to here.
     pub fn restore(&mut self, run: &Simulation, params: &PlatesParams, expected: Field<f32>, worn: Vec<Field<f32>>) {
-        (self.surface, self.poses) = (Surface::of(run, params), poses(run));
+        (self.surface, self.poses) = (Surface::of(run, params, self.surface.window), poses(run));
         self.shown_m = self.surface.shown(&self.reads_m);
         (self.expected, self.worn) = (expected, worn);
     }
@@ -160,11 +168,11 @@ impl Carved {
     /// Lets the ground drift with its plates after they have moved: writes the column, what goes with it, and the rate at
     /// which it is being raised over `span_yr`.
     pub fn carry(&mut self, run: &Simulation, params: &PlatesParams, plains: &Plains, span_yr: f64, world: &mut World) {
-        let (now, poses) = (Surface::of(run, params), poses(run));
+        let (now, poses) = (Surface::of(run, params, self.surface.window), poses(run));
         let sea_m = world.sea_level_m;
-        let kept = self.relief_kept();
+        let kept = self.relief_kept(&run.domain);
         let back = poses.iter().zip(&self.poses).map(|(now, before)| Back::between(now, before)).collect();
-        let motion = Motion { now: &now, back, kept: &kept, span_myr: span_yr * 1e-6 };
+        let motion = Motion { domain: &run.domain, now: &now, back, kept: &kept, span_myr: span_yr * 1e-6 };
         let (height, shown_m) = (world.height(), now.shown(&self.reads_m));
         let carried = CARRIED.map(|layer| world.layer(layer));
         let carved = self.carved_on_the_whole(&height, &run.domain);
@@ -175,7 +183,7 @@ impl Carved {
                 let rim = Corners::at(&world.grid, [0, 1].map(|k| from_m[k].clamp(0.0, extent_m[k])));
                 let reads = DVec2::new(rim.read(&self.reads_m[0]), rim.read(&self.reads_m[1]));
                 let height_m = bare(&now, self.reads_at(x, y), world.grid.center_m(x, y), plains);
-                let carved_m = linear(&carved, self.surface.at(reads)) as f32;
+                let carved_m = linear(&carved, run.domain.in_square(reads)) as f32;
                 Ground { height_m: height_m + carved_m, ..Ground::default() }
             }
             Some((from_m, kept_m)) => {
@@ -212,7 +220,7 @@ impl Carved {
             return None;
         }
         let before = motion.back[motion.now.plate_at(&here) as usize].apply(at);
-        let kept_m = linear(motion.kept, self.surface.at(before));
+        let kept_m = linear(motion.kept, motion.domain.in_square(before));
         Some((self.shown_at(x, y, before - at), kept_m))
     }
 
@@ -257,10 +265,10 @@ impl Carved {
 
     /// What the ground keeps of what was worn off before this step, m: the plates' own surface has sunk with the thinner
     /// crust, so that the two together leave the answer of isostasy, spread over the width of the lithosphere's strength.
-    fn relief_kept(&self) -> Field<f32> {
+    fn relief_kept(&self, domain: &Domain) -> Field<f32> {
         match self.worn.last() {
             Some(wear) => blur(wear, FLEXURE_M / wear.grid.cell_m),
-            None => Field::filled(self.surface.height.grid, 0.0),
+            None => Field::filled(domain.grid(), 0.0),
         }
     }
 

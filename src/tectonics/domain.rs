@@ -58,6 +58,11 @@ impl Domain {
         (at_m - self.corner_m) / self.cell_m()
     }
 
+    /// Map metres to metres from the square's corner, as its grid counts them.
+    pub fn in_square(&self, at_m: DVec2) -> [f64; 2] {
+        (at_m - self.corner_m).into()
+    }
+
     /// Centre of a tectonic cell in map metres.
     pub fn cell_center_m(&self, x: usize, y: usize) -> DVec2 {
         self.corner_m + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * self.cell_m()

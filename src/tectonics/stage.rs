@@ -26,6 +26,7 @@ use super::{
     tables::{self, Drift},
     thesis::Thesis,
     warp::Warp,
+    window::Window,
 };
 
 /// What is written anew whenever the stage shows itself; bedrock joins what the stage found.
@@ -77,6 +78,8 @@ enum Run {
 struct Geologic {
     simulation: Simulation,
     warp: Warp,
+    /// What the map reads of the plates.
+    window: Window,
     first: Vec<Drift>,
     /// Outlines in body coordinates, m.
     bodies: Vec<Vec<DVec2>>,
@@ -346,7 +349,8 @@ impl Geologic {
         let first = (0..simulation.plates.len())
             .map(|p| Drift::of(simulation.engine.velocity_at(p, tables::middle(&simulation, p).0)))
             .collect();
-        Ok(Self { simulation, warp, first, bodies, carved: None, level_m: None })
+        let window = Surface::window(&domain, params, &warp);
+        Ok(Self { simulation, warp, window, first, bodies, carved: None, level_m: None })
     }
 
     fn publish(
@@ -357,7 +361,7 @@ impl Geologic {
         context: &Context,
     ) -> Result<(), ProcessError> {
         let run = &self.simulation;
-        let surface = Surface::of(run, params);
+        let surface = Surface::of(run, params, self.window);
         let map_m = run.domain.map_m;
         let sea_m =
             params.land_share.map_or(world.sea_level_m, |share| surface.sea_level_for(map_m, &self.warp, share));
@@ -383,10 +387,10 @@ impl Geologic {
     fn share(&mut self, params: &PlatesParams, world: &mut World, context: &Context, fresh: bool) {
         let run = &self.simulation;
         let sea_m = params.land_share.map_or(world.sea_level_m, |share| {
-            Surface::of(run, params).sea_level_for(run.domain.map_m, &self.warp, share)
+            Surface::of(run, params, self.window).sea_level_for(run.domain.map_m, &self.warp, share)
         });
         let plains = Plains::new(world.grid, params, sea_m, context.key.named("detail"));
-        let carved = Carved::begin(run, &self.warp, params, world.grid, &plains);
+        let carved = Carved::begin(run, (&self.warp, self.window), params, world.grid, &plains);
         if fresh {
             let before = world.rock_m3();
             for layer in [Layer::Lava, Layer::Sediment, Layer::Wear, Layer::Deposit] {

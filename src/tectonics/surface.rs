@@ -6,19 +6,22 @@ use rayon::prelude::*;
 
 use crate::{
     crust,
-    grid::{Corners, Field, Grid, blur, cubic, for_each_row, linear, nearest_feature, nearest_from, nearest_within},
+    grid::{Corners, Field, Grid, blur, cubic, for_each_row, linear, nearest_feature, nearest_from},
     noise::{Fbm, Gullies, Key, Octaves, Sampler, smoothstep},
     world::Layer,
 };
 
 use super::{
     border::{BorderCell, border_cells},
+    domain::Domain,
     exchange::NONE,
     params::PlatesParams,
     plate::Rock,
+    profiles::profiles,
     simulation::Simulation,
     stretch::Meeting,
     warp::Warp,
+    window::Window,
 };
 
 /// Spacing of the widest valleys that rivers cut side by side, m.
@@ -26,11 +29,13 @@ const WIDEST_VALLEY_M: f64 = 30e3;
 /// Thickening that leaves a third of the smoothing of what lay there before, m.
 const STRENGTH_M: f32 = 8_000.0;
 
-/// No border.
-const NOWHERE: u32 = u32::MAX;
+/// Standard deviation to which the shapes that borders press into the ground are smoothed, cells.
+const SHAPES_CELLS: f64 = 1.5;
 
-/// What the map reads, on the tectonic raster.
+/// What the map reads, on the part of the tectonic raster that it reads.
 pub struct Surface {
+    /// That part.
+    pub window: Window,
     /// Height without the map's own detail, m.
     pub height: Field<f32>,
     /// Height that young mountains have over the land around them, m.
@@ -41,13 +46,12 @@ pub struct Surface {
     age: Field<f32>,
     /// Owner.
     plate: Vec<u8>,
-    rock: Vec<Rock>,
+    rock: Field<Rock>,
     borders: Vec<BorderCell>,
     time_myr: f64,
-    corner_m: DVec2,
 }
 
-/// What the plates know besides, on the tectonic raster.
+/// What the plates know besides, on the same part.
 struct Crust {
     /// Crust, km.
     thickness: Field<f32>,
@@ -70,17 +74,26 @@ struct Reading {
 }
 
 impl Surface {
+    /// The part of the tectonic raster that bears on what a map reads: a blur's three boxes reach at most three standard
+    /// deviations and three cells, slopes and cubic stencils three more.
+    pub fn window(domain: &Domain, params: &PlatesParams, warp: &Warp) -> Window {
+        let widest = stiffness_m(params).max(SHAPES_CELLS * domain.cell_m());
+        Window::around(domain, warp, 3.0 * widest / domain.cell_m() + 6.0)
+    }
+
     /// The surface of a run as it stands.
-    pub fn of(run: &Simulation, params: &PlatesParams) -> Self {
-        let grid = run.domain.grid();
-        let (plate, rock) = ground(run);
-        let borders = border_cells(run, &plate);
+    pub fn of(run: &Simulation, params: &PlatesParams, window: Window) -> Self {
+        let grid = window.grid;
+        let owners = owners(run);
+        let borders = border_cells(run, &owners);
+        let plate = Field::from_fn(grid, |x, y| owners[window.cell(x, y)]).data;
+        let rock = Field::from_fn(grid, |x, y| rock(run, window.cell(x, y)));
         let base = Field::from_fn(grid, |x, y| {
-            let r = &rock[grid.index(x, y)];
+            let r = rock.at(x, y);
             crust::height_m(r.crust_m as f64, r.kind as f64, run.time_myr - r.born_myr as f64) as f32
         });
         let mountain = Field::from_fn(grid, |x, y| {
-            let r = &rock[grid.index(x, y)];
+            let r = rock.at(x, y);
             // What heat lifts is in the base already.
             let cold_m = |thickness_m: f32| crust::airy_height_m(thickness_m as f64, crust::density(r.kind as f64));
             (cold_m(r.crust_m + r.added_m - r.worn_m) - cold_m(r.crust_m)) as f32 + r.edifice_m
@@ -88,40 +101,41 @@ impl Surface {
         // The plates' strength carries short loads: what the crust was at the start shows smoothed, but not below the
         // ranges raised since, whose height is their own.
         let smooth = |field: &Field<f32>, deviation_m: f64| blur(field, deviation_m / grid.cell_m);
-        let stiff = smooth(&base, params.belt_km * 1e3 / 4.0);
-        let shapes = smooth(&profiles(run, params, &borders, &plate, &rock), 1.5 * grid.cell_m);
+        let stiff = smooth(&base, stiffness_m(params));
+        let shapes = profiles(run, params, &borders, &window, |i| (plate[i], &rock.data[i]));
+        let shapes = smooth(&shapes, SHAPES_CELLS * grid.cell_m);
         let mountain = smooth(&mountain, 0.7 * grid.cell_m);
         let height = Field::from_fn(grid, |x, y| {
             let i = grid.index(x, y);
             let bent = stiff.data[i] - base.data[i];
             // Most ground was never thickened, and an exponential is dear.
-            let added_m = rock[i].added_m;
+            let added_m = rock.data[i].added_m;
             let free = if added_m == 0.0 { 1.0 } else { libm::expf(-added_m / STRENGTH_M) };
             base.data[i] + bent * free + shapes.data[i] + mountain.data[i]
         });
         let time = run.time_myr as f32;
         Self {
+            window,
             mountain,
-            kind: Field::from_fn(grid, |x, y| rock[grid.index(x, y)].kind),
-            age: Field::from_fn(grid, |x, y| time - rock[grid.index(x, y)].born_myr),
+            kind: Field::from_fn(grid, |x, y| rock.at(x, y).kind),
+            age: Field::from_fn(grid, |x, y| time - rock.at(x, y).born_myr),
             height,
             plate,
             rock,
             borders,
             time_myr: run.time_myr,
-            corner_m: run.domain.corner_m,
         }
     }
 
     fn crust(&self) -> Crust {
         let grid = self.height.grid;
-        let part = |f: &(dyn Fn(&Rock) -> f32 + Sync)| Field::from_fn(grid, |x, y| f(&self.rock[grid.index(x, y)]));
+        let part = |f: &(dyn Fn(&Rock) -> f32 + Sync)| Field::from_fn(grid, |x, y| f(&self.rock.at(x, y)));
         // Thickening shows as uplift by Airy's factor; m/My are mm/yr times a thousand.
         let airy = ((1.0 - crust::CONTINENTAL / crust::MANTLE) * 1e-3) as f32;
         Crust {
             thickness: part(&|rock| (rock.thickness_m() * 1e-3) as f32),
             uplift: part(&|rock| rock.rate_at(self.time_myr as f32) * airy),
-            boundary: boundary_layer(grid, &self.borders),
+            boundary: boundary_layer(&self.window, &self.borders),
         }
     }
 
@@ -159,7 +173,7 @@ impl Surface {
         let probes = Grid::new(PROBES, PROBES, 1.0, crate::grid::Edges::Closed);
         let heights = Field::from_fn(probes, |x, y| {
             let at_m = DVec2::from(probes.center_m(x, y)) * map_m;
-            linear(&self.height, (warp.read_at(at_m) - self.corner_m).into()) as f32
+            linear(&self.height, self.at(warp.read_at(at_m))) as f32
         });
         heights.level_above(land_share)
     }
@@ -173,7 +187,7 @@ impl Surface {
         ridges: &mut Sampler,
     ) -> Reading {
         let (q_m, rows) = warp.read_with_jacobian(at_m);
-        let q: [f64; 2] = (q_m - self.corner_m).into();
+        let q = self.at(q_m);
         let base = cubic(&self.height, q);
         let here = Corners::at(&self.height.grid, q);
         let slope = DVec2::new(here.read(&slope[0]), here.read(&slope[1]));
@@ -217,9 +231,9 @@ impl Surface {
         if (distance.data[i] as f64) < border_m { class[i] as f32 } else { 0.0 }
     }
 
-    /// A point of the plates' square from its corner, m.
+    /// A point of the plates' square from the window's corner, m.
     pub fn at(&self, at_m: DVec2) -> [f64; 2] {
-        (at_m - self.corner_m).into()
+        (at_m - self.window.corner_m).into()
     }
 
     /// Its height as a map reads it, m; `reads_m` are the points of the plates it reads.
@@ -249,106 +263,39 @@ impl Surface {
     }
 }
 
-/// Owner and rock of every tectonic cell; cracks too narrow to be exchanged are read from the nearest plate.
-fn ground(run: &Simulation) -> (Vec<u8>, Vec<Rock>) {
-    let n = run.domain.cells;
-    let top = &run.owners.top;
-    let cells: Vec<(u8, Rock)> = (0..n * n)
-        .into_par_iter()
-        .map(|i| {
-            let owned = |i: usize| top[i] != NONE;
-            let from = if owned(i) { i } else { nearest_from(run.domain.grid(), i, owned).unwrap_or(i) };
-            let owner = if owned(from) { top[from] } else { 0 };
-            let at_m = run.domain.cell_center_m(i % n, i / n);
-            let plate = &run.plates[owner as usize];
-            let time = run.time_myr as f32;
-            let beside = || plate.sample(run.domain.cell_center_m(from % n, from / n), time);
-            (
-                owner,
-                plate
-                    .sample(at_m, time)
-                    .or_else(beside)
-                    .unwrap_or(Rock { crust_m: crust::OCEAN_THICKNESS_M as f32, ..Rock::default() }),
-            )
-        })
-        .collect();
-    cells.into_iter().unzip()
+/// Standard deviation to which the plates' strength smooths short loads, m.
+fn stiffness_m(params: &PlatesParams) -> f64 {
+    params.belt_km * 1e3 / 4.0
 }
 
-/// Shapes that borders press into the ground beside them, m.
-fn profiles(
-    run: &Simulation,
-    params: &PlatesParams,
-    borders: &[BorderCell],
-    plate: &[u8],
-    rock: &[Rock],
-) -> Field<f32> {
-    let grid = run.domain.grid();
-    let mut shape = Field::filled(grid, 0.0f32);
-    let belt_m = params.belt_km * 1e3;
-    for meeting in [Meeting::Subduction, Meeting::Collision, Meeting::Spreading, Meeting::Transform] {
-        // The border at each cell, as its place in the list.
-        let mut at = vec![NOWHERE; grid.cells()];
-        for (place, border) in borders.iter().enumerate().filter(|(_, border)| border.meeting == meeting) {
-            at[border.cell] = place as u32;
-        }
-        if at.iter().all(|&place| place == NOWHERE) {
-            continue;
-        }
-        let reach_m = reach_m(meeting, belt_m);
-        let near = nearest_within(grid, reach_m, |i| at[i] != NOWHERE);
-        for_each_row(&mut shape.data, grid.width, |y, row| {
-            for (x, value) in row.iter_mut().enumerate() {
-                let i = grid.index(x, y);
-                let d = near.distance_m.data[i] as f64;
-                if d > reach_m {
-                    continue;
-                }
-                let border = &borders[at[near.index.data[i] as usize] as usize];
-                // How long this border has been at work: full after 40 km.
-                let moved = border.speed_m_per_yr * run.time_myr * 1e6;
-                let strength = (moved / 40e3).min(1.0);
-                let under = plate[i] as usize == border.under;
-                *value += (strength * profile(meeting, d, under, &rock[i], params, belt_m)) as f32;
-            }
-        });
-    }
-    shape
+/// The cell whose plate a tectonic cell shows: its own, or in a crack too narrow to be exchanged the nearest one's.
+fn shown(run: &Simulation, cell: usize) -> usize {
+    let owned = |i: usize| run.owners.top[i] != NONE;
+    if owned(cell) { cell } else { nearest_from(run.domain.grid(), cell, owned).unwrap_or(cell) }
 }
 
-/// Distance beyond which a profile is less than a millimetre, m.
-fn reach_m(meeting: Meeting, belt_m: f64) -> f64 {
-    match meeting {
-        Meeting::Subduction => 290e3,
-        Meeting::Collision => 4.5 * belt_m,
-        Meeting::Spreading => 140e3,
-        Meeting::Transform => 30e3,
-    }
+/// Owner of a tectonic cell.
+fn owner(run: &Simulation, shown: usize) -> u8 {
+    Some(run.owners.top[shown]).filter(|&owner| owner != NONE).unwrap_or(0)
 }
 
-fn profile(meeting: Meeting, d: f64, under: bool, rock: &Rock, params: &PlatesParams, belt_m: f64) -> f64 {
-    // Less than a part in a thousand million is not worth an exponential.
-    let bell = |x: f64, width: f64| if x.abs() > 4.6 * width { 0.0 } else { libm::exp(-(x / width) * (x / width)) };
-    let land = rock.kind as f64;
-    match meeting {
-        // Trench with a steep inner and a gentle outer wall, then the outer rise.
-        Meeting::Subduction if under => {
-            (1.0 - land) * (350.0 * bell(d - 110e3, 45e3) - params.trench_m * bell(d, 38e3))
-        }
-        Meeting::Subduction => -0.8 * params.trench_m * bell(d, 16e3),
-        // The foreland bends down under the range's weight, a belt's width before its front.
-        Meeting::Collision if under => -550.0 * land * bell(d - 1.3 * belt_m, 0.8 * belt_m),
-        Meeting::Collision => 0.0,
-        // Graben and shoulders, in continents only: sea floor has its ridge from its age.
-        Meeting::Spreading => land * (900.0 * bell(d - 42e3, 24e3) - 1300.0 * bell(d, 20e3)),
-        // A valley along the fault.
-        Meeting::Transform => -200.0 * bell(d, 7e3),
-    }
+/// Owners of all tectonic cells.
+fn owners(run: &Simulation) -> Vec<u8> {
+    (0..run.owners.top.len()).into_par_iter().map(|cell| owner(run, shown(run, cell))).collect()
+}
+
+/// Rock of a tectonic cell.
+fn rock(run: &Simulation, cell: usize) -> Rock {
+    let (n, shown) = (run.domain.cells, shown(run, cell));
+    let plate = &run.plates[owner(run, shown) as usize];
+    let rock = |cell: usize| plate.sample(run.domain.cell_center_m(cell % n, cell / n), run.time_myr as f32);
+    let bare = Rock { crust_m: crust::OCEAN_THICKNESS_M as f32, ..Rock::default() };
+    rock(cell).or_else(|| rock(shown)).unwrap_or(bare)
 }
 
 /// Class of the nearest border (catalogue numbers) and the distance to it.
-fn boundary_layer(grid: Grid, borders: &[BorderCell]) -> (Vec<u8>, Field<f32>) {
-    let mut class = vec![0u8; grid.cells()];
+fn boundary_layer(window: &Window, borders: &[BorderCell]) -> (Vec<u8>, Field<f32>) {
+    let mut class = vec![0u8; window.square.cells()];
     for border in borders {
         class[border.cell] = match border.meeting {
             Meeting::Collision => 1,
@@ -357,9 +304,12 @@ fn boundary_layer(grid: Grid, borders: &[BorderCell]) -> (Vec<u8>, Field<f32>) {
             Meeting::Transform => 4,
         };
     }
-    let near = nearest_feature(grid, |i| class[i] != 0);
-    let classes = near.index.data.iter().map(|&i| class.get(i as usize).copied().unwrap_or(0)).collect();
-    (classes, near.distance_m)
+    let near = nearest_feature(window.square, |i| class[i] != 0);
+    let nearest = |cell: usize| class.get(near.index.data[cell] as usize).copied().unwrap_or(0);
+    (
+        Field::from_fn(window.grid, |x, y| nearest(window.cell(x, y))).data,
+        Field::from_fn(window.grid, |x, y| near.distance_m.data[window.cell(x, y)]),
+    )
 }
 
 /// Ground finer than the tectonic cells where nothing was raised: plains, uplands and the hills of the sea floor.

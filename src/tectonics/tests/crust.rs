@@ -83,7 +83,8 @@ fn assert_depth_follows_age(run: &Simulation, reach_m: f64) {
     let map = Grid::new(400, 400, 2_000e3, Edges::Open);
     let params = PlatesParams { ruggedness: 0.0, belt_km: 20.0, bend: 0.0, ..PlatesParams::default() };
     let warp = Warp::new(run.domain.map_m, 0.0, Key::new(1));
-    let layers = Surface::of(run, &params).read(&warp, &Detail::new(map, &params, 0.0, Key::new(1)));
+    let window = Surface::window(&run.domain, &params, &warp);
+    let layers = Surface::of(run, &params, window).read(&warp, &Detail::new(map, &params, 0.0, Key::new(1)));
     let layer = |wanted: Layer| &layers.iter().find(|(layer, _)| *layer == wanted).unwrap().1;
     let (ground, age) = (layer(Layer::Bedrock), layer(Layer::CrustAge));
     // The stiff plate rounds the cusp at the ridge off, so the first strip is left out. Ages come in bands as wide as the
