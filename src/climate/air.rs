@@ -18,6 +18,11 @@
 //! with a stated humidity and leaves freely. On a map that wraps a row is closed exactly (it is linear in what enters it),
 //! the map by repeated laps.
 
+mod budget;
+mod laps;
+
+pub use budget::Budget;
+
 use crate::grid::{Edges, Field, Grid};
 
 use super::Zone;
@@ -35,10 +40,6 @@ const CLOUD_M: f64 = 500.0;
 const DRY_M: f64 = 800.0;
 /// Share of the rain on land that evaporates there again and goes on with the wind.
 const RECYCLED: f64 = 0.4;
-/// Laps on a map that wraps end when nothing moves by more than this share.
-const STILL: f64 = 1e-12;
-const MOST_LAPS: usize = 200;
-
 /// Water that saturates the air over a sea of that temperature, kg/m² (Magnus's formula over water, gas law).
 pub fn saturation_mm(sea_degc: f64) -> f64 {
     let t = sea_degc.clamp(-60.0, 60.0);
@@ -55,6 +56,8 @@ pub struct Below {
     slope: Field<[f64; 2]>,
     /// Share of each cell under the sea.
     pub sea: Field<f32>,
+    /// Rate at which the sea brings the air over each cell towards saturation, 1/s.
+    exchange: Vec<f64>,
     /// What latitude brings, a row each.
     pub zones: Vec<Zone>,
 }
@@ -63,7 +66,8 @@ impl Below {
     /// Ground of these heights over the sea, m, and shares of sea.
     pub fn new(height_m: Field<f32>, sea: Field<f32>, zones: Vec<Zone>) -> Self {
         let slope = Field::from_fn(height_m.grid, |x, y| height_m.gradient(x, y));
-        Self { height_m, slope, sea, zones }
+        let exchange = sea.data.iter().map(|&sea| sea as f64 * SEA_EXCHANGE_M_PER_S / VAPOUR_M).collect();
+        Self { height_m, slope, sea, exchange, zones }
     }
 }
 
@@ -80,26 +84,6 @@ pub struct Habits {
     pub delay_s: f64,
     /// How far air stays dry that came down, m.
     pub shadow_m: f64,
-}
-
-/// Where the water came from and where it went, kg/s.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Budget {
-    /// Evaporated from the sea.
-    pub from_sea: f64,
-    /// Came in over the rim.
-    pub from_rim: f64,
-    /// Stayed on the ground: rain less what evaporated again from land.
-    pub to_ground: f64,
-    /// Left over the rim.
-    pub to_rim: f64,
-}
-
-impl Budget {
-    /// What came in and is not accounted for, kg/s.
-    pub fn residual(&self) -> f64 {
-        self.from_sea + self.from_rim - self.to_ground - self.to_rim
-    }
 }
 
 /// A wind over the ground, solved.
@@ -121,7 +105,6 @@ pub struct Air<'a> {
 struct Cell {
     rain_out: f64,
     cloud_up: f64,
-    exchange: f64,
     recycled: f64,
     water: Water,
 }
@@ -164,8 +147,18 @@ impl<'a> Air<'a> {
         let east: Vec<f64> = wind.iter().map(|wind| wind[0]).collect();
         let order = order(&south);
         let mut air = Self { grid, below, habits, east, south, order, cells: vec![Cell::default(); grid.cells()] };
-        air.rate();
-        air.blow();
+        let mut crest = below.height_m.data.iter().map(|&h| h as f64).collect::<Vec<f64>>();
+        if grid.edges == Edges::Wrap {
+            air.rate_laps(&mut crest);
+            air.blow_laps();
+        } else {
+            // A row at a time from crests to water, while it is at hand.
+            for y in air.order.clone() {
+                air.climb(y, 1, &mut crest);
+                air.rate(y, &crest);
+                air.sweep(y, air.beyond(y));
+            }
+        }
         air
     }
 
@@ -174,54 +167,47 @@ impl<'a> Air<'a> {
         self.cells.iter().map(|cell| cell.water.cloud / self.habits.delay_s)
     }
 
-    /// Every cell's rates.
-    fn rate(&mut self) {
-        let shelter = self.shelter();
-        for y in 0..self.grid.height {
-            let (zone, wind) = (&self.below.zones[y], [self.east[y], 0.5 * (self.south[y] + self.south[y + 1])]);
-            for x in 0..self.grid.width {
-                let i = self.grid.index(x, y);
-                let [gx, gy] = self.below.slope.data[i];
-                let lift = wind[0] * gx + wind[1] * gy;
-                let sea = self.below.sea.data[i] as f64;
-                self.cells[i] = Cell {
-                    rain_out: self.habits.lift_share * lift.max(0.0) / VAPOUR_M
-                        + zone.belt / STAY_S * libm::exp(-shelter[i] / DRY_M),
-                    cloud_up: (-lift).max(0.0) / CLOUD_M,
-                    exchange: sea * SEA_EXCHANGE_M_PER_S / VAPOUR_M,
-                    recycled: (1.0 - sea) * RECYCLED,
-                    water: Water::default(),
-                };
-            }
+    /// The rates of a row's cells. How far the air has come down from the last crest shelters them.
+    fn rate(&mut self, y: usize, crest: &[f64]) {
+        let row = y * self.grid.width;
+        let wind = [self.east[y], 0.5 * (self.south[y] + self.south[y + 1])];
+        let weather = self.below.zones[y].belt / STAY_S;
+        for i in row..row + self.grid.width {
+            let [gx, gy] = self.below.slope.data[i];
+            let lift = wind[0] * gx + wind[1] * gy;
+            let come_down_m = crest[i] - self.below.height_m.data[i] as f64;
+            self.cells[i] = Cell {
+                rain_out: self.habits.lift_share * lift.max(0.0) / VAPOUR_M + weather * libm::exp(-come_down_m / DRY_M),
+                cloud_up: (-lift).max(0.0) / CLOUD_M,
+                recycled: (1.0 - self.below.sea.data[i] as f64) * RECYCLED,
+                water: Water::default(),
+            };
         }
     }
 
-    /// How far air has come down from the last crest, m: it remembers the crest's height for a while.
-    fn shelter(&self) -> Vec<f64> {
+    /// The height of the last crest, m, as the air over a row's cells remembers it for a while; `times` round.
+    fn climb(&self, y: usize, times: usize, crest: &mut [f64]) {
+        let flow = self.inflow(y);
+        let inflow = flow.along + flow.beside.iter().map(|(rate, _)| rate).sum::<f64>();
+        if inflow <= 0.0 {
+            return;
+        }
+        let speed = libm::hypot(self.east[y], 0.5 * (self.south[y] + self.south[y + 1])).max(1e-9);
+        let kept = libm::exp(-speed / (inflow * self.habits.shadow_m));
         let height = &self.below.height_m.data;
-        let mut crest: Vec<f64> = height.iter().map(|&h| h as f64).collect();
-        let laps = if self.grid.edges == Edges::Wrap { 2 } else { 1 };
-        for &y in (0..laps).flat_map(|_| &self.order) {
-            let flow = self.inflow(y);
-            let inflow = flow.along + flow.beside.iter().map(|(rate, _)| rate).sum::<f64>();
-            if inflow <= 0.0 {
-                continue;
-            }
-            let speed = libm::hypot(self.east[y], 0.5 * (self.south[y] + self.south[y + 1])).max(1e-9);
-            let kept = libm::exp(-speed / (inflow * self.habits.shadow_m));
-            let mut behind = None;
-            for x in self.columns(y).chain(self.columns(y).filter(|_| laps > 1)) {
-                let i = y * self.grid.width + x;
-                let own = height[i] as f64;
-                let mut sum = flow.along * behind.unwrap_or(own);
-                for (rate, row) in flow.beside {
+        let mut behind = None;
+        for x in (0..times).flat_map(|_| self.columns(y)) {
+            let i = y * self.grid.width + x;
+            let own = height[i] as f64;
+            let mut sum = flow.along * behind.unwrap_or(own);
+            for (rate, row) in flow.beside {
+                if rate > 0.0 {
                     sum += rate * row.map_or(own, |row| crest[row + x]);
                 }
-                crest[i] = own.max(own + (sum / inflow - own) * kept);
-                behind = Some(crest[i]);
             }
+            crest[i] = own.max(own + (sum / inflow - own) * kept);
+            behind = Some(crest[i]);
         }
-        crest.iter().zip(height).map(|(crest, &own)| crest - own as f64).collect()
     }
 
     /// The columns of a row, down the wind.
@@ -255,63 +241,23 @@ impl<'a> Air<'a> {
         Water { vapour, cloud: vapour * zone.belt / STAY_S * self.habits.delay_s }
     }
 
-    /// Carries the water over the map.
-    fn blow(&mut self) {
-        if self.grid.edges != Edges::Wrap {
-            for y in self.order.clone() {
-                self.sweep(y, None);
-            }
-            return;
-        }
-        for _ in 0..MOST_LAPS {
-            let before: Vec<Water> = self.cells.iter().map(|cell| cell.water).collect();
-            for y in self.order.clone() {
-                self.close(y);
-            }
-            self.balance();
-            let (mut moved, mut most) = (0.0f64, 0.0f64);
-            for (cell, before) in self.cells.iter().zip(&before) {
-                moved = moved.max((cell.water.vapour - before.vapour).abs());
-                most = most.max(cell.water.vapour);
-            }
-            if moved <= STILL * most {
-                break;
-            }
-        }
-    }
-
-    /// Solves a row that closes on itself: what leaves its end is linear in what enters its beginning.
-    fn close(&mut self, y: usize) {
-        if self.east[y] == 0.0 {
-            return self.sweep(y, None);
-        }
-        let mut end = |vapour: f64, cloud: f64| {
-            self.sweep(y, Some(Water { vapour, cloud }));
-            let last = self.columns(y).last().unwrap_or(0);
-            self.cells[self.grid.index(last, y)].water
-        };
-        let (none, one, other) = (end(0.0, 0.0), end(1.0, 0.0), end(0.0, 1.0));
-        let (a, c) = (one.vapour - none.vapour, one.cloud - none.cloud);
-        let (b, d) = (other.vapour - none.vapour, other.cloud - none.cloud);
-        let determinant = (1.0 - a) * (1.0 - d) - b * c;
-        let vapour = ((1.0 - d) * none.vapour + b * none.cloud) / determinant;
-        let cloud = (c * none.vapour + (1.0 - a) * none.cloud) / determinant;
-        self.sweep(y, Some(Water { vapour, cloud }));
-    }
-
-    /// Solves a row down the wind; `entry` is what flows into its first cell along the row, if it is not the rim's.
-    fn sweep(&mut self, y: usize, entry: Option<Water>) {
+    /// Solves a row down the wind; `entry` is what flows into its first cell along the row.
+    fn sweep(&mut self, y: usize, entry: Water) {
         let (beyond, outflow, flow) = (self.beyond(y), self.outflow(y), self.inflow(y));
         let supply = saturation_mm(self.below.zones[y].sea_degc);
         let falls = 1.0 / self.habits.delay_s;
-        let mut behind = entry.unwrap_or(beyond);
+        let mut behind = entry;
         for x in self.columns(y) {
             let mut come = Water::default().plus(behind, flow.along);
             for (rate, row) in flow.beside {
-                come = come.plus(row.map_or(beyond, |row| self.cells[row + x].water), rate);
+                if rate > 0.0 {
+                    come = come.plus(row.map_or(beyond, |row| self.cells[row + x].water), rate);
+                }
             }
-            let cell = &mut self.cells[y * self.grid.width + x];
-            let Cell { rain_out, cloud_up, exchange, recycled, .. } = *cell;
+            let i = y * self.grid.width + x;
+            let exchange = self.below.exchange[i];
+            let cell = &mut self.cells[i];
+            let Cell { rain_out, cloud_up, recycled, .. } = *cell;
             let (back, source) = (cloud_up + recycled * falls, come.vapour + exchange * supply);
             let (vapour_out, cloud_out) = (outflow + rain_out + exchange, outflow + falls + cloud_up);
             let per = 1.0 / (vapour_out * cloud_out - back * rain_out);
@@ -321,53 +267,6 @@ impl<'a> Air<'a> {
             };
             cell.water = behind;
         }
-    }
-
-    /// On a map that wraps, all water in proportion, so that what evaporates is what falls: takes out the slowest error.
-    fn balance(&mut self) {
-        let (mut given, mut taken) = (0.0, 0.0);
-        for (i, cell) in self.cells.iter().enumerate() {
-            given += cell.exchange * saturation_mm(self.below.zones[i / self.grid.width].sea_degc);
-            let kept = (1.0 - cell.recycled) / self.habits.delay_s;
-            taken += cell.exchange * cell.water.vapour + kept * cell.water.cloud;
-        }
-        if taken > 0.0 {
-            let factor = given / taken;
-            for cell in &mut self.cells {
-                cell.water = Water::default().plus(cell.water, factor);
-            }
-        }
-    }
-
-    /// Where the water came from and where it went.
-    pub fn budget(&self) -> Budget {
-        let grid = &self.grid;
-        let area_m2 = grid.cell_area_m2();
-        let all = |water: Water| water.vapour + water.cloud;
-        let mut budget = Budget::default();
-        for y in 0..grid.height {
-            let (supply, row) = (saturation_mm(self.below.zones[y].sea_degc), y * grid.width);
-            for cell in &self.cells[row..row + grid.width] {
-                budget.from_sea += cell.exchange * (supply - cell.water.vapour) * area_m2;
-                budget.to_ground += (1.0 - cell.recycled) * cell.water.cloud / self.habits.delay_s * area_m2;
-            }
-            if grid.edges == Edges::Wrap {
-                continue;
-            }
-            let (flow, brings) = (self.inflow(y), all(self.beyond(y)) * area_m2);
-            let beside: f64 = flow.beside.iter().filter(|(_, row)| row.is_none()).map(|(rate, _)| rate).sum();
-            budget.from_rim += (flow.along + beside * grid.width as f64) * brings;
-            let takes = |x: usize| all(self.cells[row + x].water) * area_m2;
-            let last = if self.east[y] < 0.0 { 0 } else { grid.width - 1 };
-            budget.to_rim += flow.along * takes(last);
-            let mut out = 0.0;
-            out += if y == 0 { (-self.south[y]).max(0.0) } else { 0.0 };
-            out += if y + 1 == grid.height { self.south[y + 1].max(0.0) } else { 0.0 };
-            if out > 0.0 {
-                budget.to_rim += out / grid.cell_m * (0..grid.width).map(takes).sum::<f64>();
-            }
-        }
-        budget
     }
 }
 
