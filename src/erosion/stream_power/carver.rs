@@ -112,6 +112,8 @@ pub struct Carver {
     surface_m: Vec<f64>,
     /// Sediment on its way; where it ends, what was laid down.
     load_m: Vec<f64>,
+    /// How freely hillslopes creep, as a share.
+    open: Vec<f32>,
     deposition: Deposition,
     coast: Coast,
     slide: Slide,
@@ -129,6 +131,7 @@ impl Carver {
             raised_m: zeros(),
             surface_m: zeros(),
             load_m: zeros(),
+            open: vec![0.0; grid.cells()],
             deposition: Deposition::default(),
             coast: Coast::default(),
             slide: Slide::default(),
@@ -363,13 +366,13 @@ impl Carver {
         let fixed: Vec<(usize, f64)> =
             self.base.edge.iter().filter(|(_, base)| *base == Base::Fixed).map(|&(i, _)| (i, height_m[i])).collect();
         let sea_m = forcing.sea_level_m;
-        let open: Vec<f32> = match forcing.ease {
-            Some(ease) => {
-                height_m.par_iter().zip(ease).map(|(&z, &ease)| if z >= sea_m { ease } else { 0.0 }).collect()
-            }
-            None => height_m.par_iter().map(|&z| if z >= sea_m { 1.0 } else { 0.0 }).collect(),
-        };
-        diffuse(self.grid(), height_m, law.diffusivity_m2_per_yr * years, &open);
+        let cells = self.open.par_iter_mut().zip(&*height_m);
+        match forcing.ease {
+            Some(ease) => cells.zip(ease).for_each(|((open, &z), &ease)| *open = if z >= sea_m { ease } else { 0.0 }),
+            None => cells.for_each(|(open, &z)| *open = if z >= sea_m { 1.0 } else { 0.0 }),
+        }
+        let spread_m2 = law.diffusivity_m2_per_yr * years;
+        diffuse(self.router.grid(), height_m, spread_m2, &self.open, &mut self.surface_m);
         let mut left_m = 0.0;
         for (i, z) in fixed {
             left_m += std::mem::replace(&mut height_m[i], z) - z;
