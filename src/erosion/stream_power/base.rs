@@ -5,6 +5,8 @@
 //! length of the catchment, so that it sinks towards the sea and not below. Where the rim is held it sinks by no more than
 //! uplift raised it.
 
+use rayon::prelude::*;
+
 use crate::{
     flow::{Compass, LENGTHS},
     grid::{Edges, Grid},
@@ -35,8 +37,8 @@ pub(super) struct BaseLevel {
 impl BaseLevel {
     /// Finds the outlets of a surface. On the rim's `gates`, in ascending order, rivers come in and no water leaves.
     pub(super) fn find(&mut self, grid: Grid, height_m: &[f64], sea_level_m: f64, (rim, gates): (Rim, &[usize])) {
-        self.outlet.clear();
-        self.outlet.extend(height_m.iter().map(|&z| z < sea_level_m));
+        self.outlet.resize(height_m.len(), false);
+        self.outlet.par_iter_mut().zip(height_m).for_each(|(outlet, &z)| *outlet = z < sea_level_m);
         self.sea = self.outlet.contains(&true);
         self.edge.clear();
         if grid.edges == Edges::Open {
