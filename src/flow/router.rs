@@ -91,8 +91,8 @@ impl Router {
         if self.way[i] == ROOT { i } else { self.compass.to(i, self.way[i]) }
     }
 
-    /// Cells below the spill point of their depression, each with that level, m; of the surface last routed.
-    pub fn flooded<'a>(&'a self, height_m: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
+    /// Cells below the spill point of their depression, by their index, each with that level, m; of the surface last routed.
+    pub fn flooded(&self, height_m: &[f64]) -> Vec<(usize, f64)> {
         self.spill.flooded(height_m)
     }
 

@@ -60,12 +60,15 @@ impl Spill {
         self.first.len().saturating_sub(1)
     }
 
-    /// Cells whose ground lies below the level of their basin, each with that level.
-    pub(super) fn flooded<'a>(&'a self, z: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
-        self.cells.iter().filter_map(move |&i| {
-            let (i, level) = (i as usize, self.level_m[self.label[i as usize].load(Relaxed) as usize]);
-            (z[i] < level).then_some((i, level))
-        })
+    /// Cells whose ground lies below the level of their basin, by their index, each with that level.
+    pub(super) fn flooded(&self, z: &[f64]) -> Vec<(usize, f64)> {
+        let cells = self.label.par_iter().zip(z).enumerate();
+        let flooded = cells.filter_map(|(i, (label, &z))| {
+            let basin = label.load(Relaxed) as usize;
+            let level = if basin == 0 { f64::NEG_INFINITY } else { self.level_m[basin] };
+            (z < level).then_some((i, level))
+        });
+        flooded.collect()
     }
 
     /// Collects what drains to each pit.

@@ -102,9 +102,8 @@ pub struct Moved {
 pub struct Carver {
     router: Router,
     base: BaseLevel,
-    /// What gathers on the way down: water in m² of catchment.
-    water_m2: Vec<f64>,
-    /// Share of a drop that stays, or the ratio of the law where it is not linear.
+    /// Share of a drop that stays, or the ratio of the law where it is not linear; at an outlet, the water that gathered
+    /// there, m² of catchment.
     ratio: Vec<f64>,
     /// Ground after uplift, m.
     raised_m: Vec<f64>,
@@ -126,7 +125,6 @@ impl Carver {
         Self {
             router: Router::new(grid),
             base: BaseLevel::default(),
-            water_m2: zeros(),
             ratio: zeros(),
             raised_m: zeros(),
             surface_m: zeros(),
@@ -151,9 +149,8 @@ impl Carver {
     /// One step of `years`: `height_m` becomes the ground after it.
     pub fn step(&mut self, law: &Law, forcing: &Forcing, height_m: &mut Vec<f64>, years: f64) -> Moved {
         self.route(law, forcing, height_m);
-        self.gather_water(forcing);
-        let lifted_m = self.lift(law, forcing, height_m, years);
         self.weigh(law, forcing, years);
+        let lifted_m = self.lift(law, forcing, height_m, years);
         self.erode(law, forcing, height_m, years);
         if law.slides_all_round {
             self.fail(law, height_m);
@@ -175,19 +172,36 @@ impl Carver {
         self.router.route(&self.surface_m, &self.base.outlet);
     }
 
-    fn gather_water(&mut self, forcing: &Forcing) {
+    /// Gathers water, and weighs with it how strongly the law holds in each cell.
+    fn weigh(&mut self, law: &Law, forcing: &Forcing, years: f64) {
+        self.rain(forcing);
+        let (way, cell_m) = (self.router.ways(), self.grid().cell_m);
+        let per_length = LENGTHS.map(|cells| law.erodibility * years / libm::pow(cells * cell_m, law.slope_exponent));
+        let stays = law.slope_exponent == 1.0 && law.deposition == 0.0;
+        self.router.descend(&mut self.ratio, |i, ratio| {
+            let ease = forcing.ease.map_or(1.0, |ease| ease[i] as f64);
+            let water_m2 = *ratio;
+            let strength = ease * per_length[way[i] as usize & 7] * law.pull(water_m2);
+            *ratio = if stays { 1.0 / (1.0 + strength) } else { strength };
+            water_m2
+        });
+        // What stands under water is not cut.
+        for (i, _) in self.router.flooded(&self.surface_m) {
+            self.ratio[i] = if stays { 1.0 } else { 0.0 };
+        }
+    }
+
+    /// The water that each cell has of its own.
+    fn rain(&mut self, forcing: &Forcing) {
         let cell_m2 = self.grid().cell_area_m2() / REFERENCE_RAIN_MM_PER_YR;
+        let water_m2 = &mut self.ratio;
         match forcing.rain_mm_per_yr {
-            Some(rain) => {
-                let fallen = self.water_m2.par_iter_mut().zip(rain);
-                fallen.for_each(|(water, &rain)| *water = rain as f64 * cell_m2);
-            }
-            None => self.water_m2.fill(forcing.uniform_rain_mm_per_yr * cell_m2),
+            Some(rain) => water_m2.par_iter_mut().zip(rain).for_each(|(water, &rain)| *water = rain as f64 * cell_m2),
+            None => water_m2.par_iter_mut().for_each(|water| *water = forcing.uniform_rain_mm_per_yr * cell_m2),
         }
-        for &(i, water_m2) in forcing.inflows {
-            self.water_m2[i] += water_m2;
+        for &(i, inflow_m2) in forcing.inflows {
+            water_m2[i] += inflow_m2;
         }
-        self.router.descend(&mut self.water_m2, |_, water| *water);
     }
 
     /// Uplift; gives the sum of it.
@@ -215,33 +229,9 @@ impl Carver {
         })
     }
 
-    /// The law's coefficient of every cell.
-    fn weigh(&mut self, law: &Law, forcing: &Forcing, years: f64) {
-        let (way, water, width) = (self.router.ways(), &self.water_m2, self.grid().width);
-        let cell_m = self.grid().cell_m;
-        let per_length = LENGTHS.map(|cells| law.erodibility * years / libm::pow(cells * cell_m, law.slope_exponent));
-        let linear = law.slope_exponent == 1.0;
-        crate::grid::for_each_row(&mut self.ratio, width, |y, row| {
-            let at = y * width;
-            for (x, ratio) in row.iter_mut().enumerate() {
-                let ease = forcing.ease.map_or(1.0, |ease| ease[at + x] as f64);
-                let strength = ease * per_length[way[at + x] as usize & 7];
-                *ratio = strength * law.pull(water[at + x]);
-                if linear && law.deposition == 0.0 {
-                    *ratio = 1.0 / (1.0 + *ratio);
-                }
-            }
-        });
-        // What stands under water is not cut.
-        let still = if linear && law.deposition == 0.0 { 1.0 } else { 0.0 };
-        for (i, _) in self.router.flooded(&self.surface_m) {
-            self.ratio[i] = still;
-        }
-    }
-
     /// The network from its outlets up: `height_m` becomes the eroded ground, `surface_m` that with the water on it.
     fn erode(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64], years: f64) {
-        self.surface_m.copy_from_slice(&self.raised_m);
+        self.surface_m.par_iter_mut().zip(&self.raised_m).for_each(|(surface, &raised)| *surface = raised);
         self.set_base(law, forcing, height_m, years);
         let (router, ratio) = (&self.router, &self.ratio);
         let steepest = LENGTHS.map(|cells| cells * self.grid().cell_m * law.steepest);
@@ -290,7 +280,7 @@ impl Carver {
                 Base::Mouth(slope) => {
                     let above = self.raised_m[i] - sea_m;
                     let ease = forcing.ease.map_or(1.0, |ease| ease[i] as f64);
-                    let water = self.water_m2[i];
+                    let water = self.ratio[i];
                     // Beyond the rim the river runs at least as far as its catchment is wide.
                     let length = water.max(self.grid().cell_area_m2()).sqrt();
                     let slope = slope.min(law.steepest);
@@ -307,18 +297,16 @@ impl Carver {
     }
 
     /// Carries what was eroded down the network. Afterwards `load_m` is, at an outlet, all that came; under a lake, what
-    /// was laid down there; elsewhere what passed.
+    /// was laid down there; elsewhere what came by.
     fn gather_load(&mut self, height_m: &[f64]) {
         let (raised, surface) = (&self.raised_m, &self.surface_m);
         self.load_m.par_iter_mut().enumerate().for_each(|(i, load)| *load = raised[i] - height_m[i]);
         self.router.descend(&mut self.load_m, |i, load| {
             let (came, room) = (*load, surface[i] - height_m[i]);
             if room > 0.0 {
-                let settles = came.clamp(0.0, room);
-                *load = settles;
-                came - settles
+                *load = came.clamp(0.0, room);
+                came - *load
             } else {
-                *load = came - (raised[i] - height_m[i]);
                 came
             }
         });
@@ -328,9 +316,12 @@ impl Carver {
     fn carry(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64]) -> f64 {
         self.gather_load(height_m);
         let (way, surface, load) = (self.router.ways(), &self.surface_m, &self.load_m);
-        let in_lake = |i: usize| way[i] != ROOT && surface[i] > height_m[i];
-        let laid: Vec<(usize, f64)> =
-            (0..height_m.len()).into_par_iter().filter(|&i| in_lake(i)).map(|i| (i, load[i])).collect();
+        let (grid, ground) = (self.grid(), &*height_m);
+        let in_lake = |&i: &usize| surface[i] > ground[i] && way[i] != ROOT;
+        let rows = (0..grid.height).into_par_iter();
+        let laid: Vec<(usize, f64)> = rows
+            .flat_map_iter(|y| (y * grid.width..(y + 1) * grid.width).filter(in_lake).map(|i| (i, load[i])))
+            .collect();
         lake::settle(&self.router, &laid, height_m);
         let mut left_m = 0.0;
         for &(i, _) in &self.base.edge {

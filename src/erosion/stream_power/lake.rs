@@ -97,10 +97,8 @@ mod tests {
         let ground: Vec<f64> = (0..20).map(|x| if x == 0 { 0.0 } else { bed(x) }).collect();
         let mut router = Router::new(grid);
         router.route(&ground, &(0..20).map(|x| x == 0).collect::<Vec<_>>());
-        let drowned: Vec<usize> = router.flooded(&ground).map(|(i, _)| i).collect();
-        let mut drowned: Vec<(usize, f64)> =
-            drowned.into_iter().map(|i| (i, if i == 7 { 6.0 } else { 0.25 })).collect();
-        drowned.sort_unstable_by_key(|&(i, _)| i);
+        let drowned: Vec<(usize, f64)> =
+            router.flooded(&ground).into_iter().map(|(i, _)| (i, if i == 7 { 6.0 } else { 0.25 })).collect();
         assert_eq!(drowned.iter().map(|&(i, _)| i).collect::<Vec<_>>(), [3, 4, 5, 6, 7, 11, 12, 13, 14, 15]);
         let mut z = ground.clone();
         settle(&router, &drowned, &mut z);

@@ -360,7 +360,7 @@ fn a_lake_is_kept_and_fills_with_what_rivers_bring() {
     let forcing = Forcing { sea_level_m: 0.0, ..DRY };
     let mut carver = Carver::new(grid);
     carver.step(&law, &forcing, &mut z, 1e5);
-    let lake: Vec<usize> = carver.router().flooded(&before).map(|(i, _)| i).collect();
+    let lake: Vec<usize> = carver.router().flooded(&before).into_iter().map(|(i, _)| i).collect();
     assert!(lake.contains(&deep));
     // No lake bed is cut, and the lake is not filled at once.
     assert!(lake.iter().all(|&i| z[i] >= before[i]) && z[deep] < 180.0);
