@@ -39,7 +39,7 @@ impl BaseLevel {
     pub(super) fn find(&mut self, grid: Grid, height_m: &[f64], sea_level_m: f64, (rim, gates): (Rim, &[usize])) {
         self.outlet.resize(height_m.len(), false);
         self.outlet.par_iter_mut().zip(height_m).for_each(|(outlet, &z)| *outlet = z < sea_level_m);
-        self.sea = self.outlet.contains(&true);
+        self.sea = self.outlet.par_chunks(grid.width.max(1)).any(|row| row.contains(&true));
         self.edge.clear();
         if grid.edges == Edges::Open {
             let compass = Compass::new(grid);
@@ -67,8 +67,8 @@ impl BaseLevel {
 fn rim_cells(grid: Grid) -> impl Iterator<Item = usize> {
     let (w, h) = (grid.width, grid.height);
     (0..h).flat_map(move |y| {
-        let whole = y == 0 || y + 1 == h;
-        (0..w).filter(move |&x| whole || x == 0 || x + 1 == w).map(move |x| grid.index(x, y))
+        let step = if y == 0 || y + 1 == h { 1 } else { w - 1 };
+        (0..w).step_by(step.max(1)).map(move |x| grid.index(x, y))
     })
 }
 
