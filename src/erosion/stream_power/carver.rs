@@ -111,6 +111,8 @@ pub struct Carver {
     surface_m: Vec<f64>,
     /// Sediment on its way; where it ends, what was laid down.
     load_m: Vec<f64>,
+    /// Whether water stands on the ground.
+    drowned: Vec<bool>,
     /// How freely hillslopes creep, as a share.
     open: Vec<f32>,
     deposition: Deposition,
@@ -129,6 +131,7 @@ impl Carver {
             raised_m: zeros(),
             surface_m: zeros(),
             load_m: zeros(),
+            drowned: vec![false; grid.cells()],
             open: vec![0.0; grid.cells()],
             deposition: Deposition::default(),
             coast: Coast::default(),
@@ -178,13 +181,14 @@ impl Carver {
         let (way, cell_m) = (self.router.ways(), self.grid().cell_m);
         let per_length = LENGTHS.map(|cells| law.erodibility * years / libm::pow(cells * cell_m, law.slope_exponent));
         let stays = law.slope_exponent == 1.0 && law.deposition == 0.0;
-        self.router.descend(&mut self.ratio, |i, ratio| {
-            let ease = forcing.ease.map_or(1.0, |ease| ease[i] as f64);
-            let water_m2 = *ratio;
-            let strength = ease * per_length[way[i] as usize & 7] * law.pull(water_m2);
-            *ratio = if stays { 1.0 / (1.0 + strength) } else { strength };
-            water_m2
-        });
+        self.router.descend(&mut self.ratio, |_, water| *water);
+        self.ratio.par_iter_mut().zip(way).enumerate().filter(|&(_, (_, &way))| way != ROOT).for_each(
+            |(i, (ratio, &way))| {
+                let ease = forcing.ease.map_or(1.0, |ease| ease[i] as f64);
+                let strength = ease * per_length[way as usize & 7] * law.pull(*ratio);
+                *ratio = if stays { 1.0 / (1.0 + strength) } else { strength };
+            },
+        );
         // What stands under water is not cut.
         for (i, _) in self.router.flooded(&self.surface_m) {
             self.ratio[i] = if stays { 1.0 } else { 0.0 };
@@ -300,24 +304,27 @@ impl Carver {
     /// was laid down there; elsewhere what came by.
     fn gather_load(&mut self, height_m: &[f64]) {
         let (raised, surface) = (&self.raised_m, &self.surface_m);
-        self.load_m.par_iter_mut().enumerate().for_each(|(i, load)| *load = raised[i] - height_m[i]);
+        let cells = self.load_m.par_iter_mut().zip(&mut self.drowned).zip(raised).zip(surface).zip(height_m);
+        cells.for_each(|((((load, drowned), &raised), &surface), &z)| {
+            *load = raised - z;
+            *drowned = surface > z;
+        });
+        let drowned = &self.drowned;
         self.router.descend(&mut self.load_m, |i, load| {
-            let (came, room) = (*load, surface[i] - height_m[i]);
-            if room > 0.0 {
-                *load = came.clamp(0.0, room);
-                came - *load
-            } else {
-                came
+            let came = *load;
+            if !drowned[i] {
+                return came;
             }
+            *load = came.clamp(0.0, surface[i] - height_m[i]);
+            came - *load
         });
     }
 
     /// Lays the load down in lakes and in the sea; gives what left the map.
     fn carry(&mut self, law: &Law, forcing: &Forcing, height_m: &mut [f64]) -> f64 {
         self.gather_load(height_m);
-        let (way, surface, load) = (self.router.ways(), &self.surface_m, &self.load_m);
-        let (grid, ground) = (self.grid(), &*height_m);
-        let in_lake = |&i: &usize| surface[i] > ground[i] && way[i] != ROOT;
+        let (grid, way, drowned, load) = (self.grid(), self.router.ways(), &self.drowned, &self.load_m);
+        let in_lake = |&i: &usize| drowned[i] && way[i] != ROOT;
         let rows = (0..grid.height).into_par_iter();
         let laid: Vec<(usize, f64)> = rows
             .flat_map_iter(|y| (y * grid.width..(y + 1) * grid.width).filter(in_lake).map(|i| (i, load[i])))
