@@ -6,6 +6,7 @@
 
 use std::ops::AddAssign;
 
+use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::{
@@ -219,19 +220,7 @@ fn find_ways(compass: &Compass, height_m: &[f64], outlet: &[bool], y: usize, out
     };
     match rows_beside(compass.grid, height_m, y) {
         Some((north, row, south)) if width > 2 => {
-            for x in 1..width - 1 {
-                let around = [
-                    north[x - 1],
-                    north[x],
-                    north[x + 1],
-                    row[x - 1],
-                    row[x + 1],
-                    south[x - 1],
-                    south[x],
-                    south[x + 1],
-                ];
-                out[x] = steepest(row[x], (0..8u8).zip(around));
-            }
+            find_ways_inside([north, row, south], out);
             out[0] = at_rim(0);
             out[width - 1] = at_rim(width - 1);
         }
@@ -242,17 +231,28 @@ fn find_ways(compass: &Compass, height_m: &[f64], outlet: &[bool], y: usize, out
     }
 }
 
+/// The ways of a row but for its ends; the rows are the one to the north, its own, and the one to the south.
+#[multiversion(targets("x86_64+avx2"))]
+fn find_ways_inside(rows: [&[f64]; 3], out: &mut [u8]) {
+    let inside = out.len() - 2;
+    let around = STEPS.map(|(dx, dy)| &rows[(1 + dy) as usize][(1 + dx) as usize..][..inside]);
+    for (x, (out, &z)) in out[1..][..inside].iter_mut().zip(&rows[1][1..]).enumerate() {
+        *out = steepest(z, (0..8u8).zip(around.map(|row| row[x])));
+    }
+}
+
 /// The way of the steepest drop.
-#[inline]
+#[inline(always)]
 fn steepest(z: f64, around: impl Iterator<Item = (u8, f64)>) -> u8 {
-    let (mut steepest, mut way) = (0.0, PIT);
+    // As wide as the heights, so that the loops over cells become loops over vectors.
+    let (mut steepest, mut way) = (0.0, PIT as u64);
     for (step, below) in around {
         let drop = (z - below) * CLOSENESS[step as usize];
         // Written as two selections, which need no jump.
-        way = if drop > steepest { step } else { way };
+        way = if drop > steepest { step as u64 } else { way };
         steepest = if drop > steepest { drop } else { steepest };
     }
-    way
+    way as u8
 }
 
 /// One over each of [`LENGTHS`].
