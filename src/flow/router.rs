@@ -37,7 +37,8 @@ struct Strip {
 pub struct Router {
     compass: Compass,
     way: Vec<u8>,
-    waiting: Vec<u8>,
+    /// The steps to each cell's donors, a bit for each; in [`Router::put_in_order`], to those that have yet to give.
+    donors: Vec<u8>,
     strip_cells: usize,
     strips: Vec<Strip>,
     /// Cells with a donor from another strip, or downstream of one; each after its donors.
@@ -52,7 +53,7 @@ impl Router {
         Self {
             compass: Compass::new(grid),
             way: vec![ROOT; grid.cells()],
-            waiting: vec![0; grid.cells()],
+            donors: vec![0; grid.cells()],
             strip_cells: (STRIP_ROWS * grid.width).max(1),
             strips: (0..strips).map(|_| Strip::default()).collect(),
             trunk: Vec::new(),
@@ -65,9 +66,9 @@ impl Router {
     pub fn route(&mut self, height_m: &[f64], outlet: &[bool]) {
         let compass = self.compass;
         for_each_row(&mut self.way, compass.grid.width, |y, row| find_ways(&compass, height_m, outlet, y, row));
-        self.spill.drain(&compass, height_m, &mut self.way);
         let way = &self.way;
-        for_each_row(&mut self.waiting, compass.grid.width, |y, row| count_donors(&compass, way, y, row));
+        for_each_row(&mut self.donors, compass.grid.width, |y, row| find_donors(&compass, way, y, row));
+        self.spill.drain(height_m, Forest { compass, way: &mut self.way, donors: &mut self.donors });
         self.put_in_order();
     }
 
@@ -157,21 +158,24 @@ impl Router {
 
     fn put_in_order(&mut self) {
         let (compass, way, strip_cells) = (self.compass, &self.way, self.strip_cells);
-        let parts = self.strips.par_iter_mut().zip(self.waiting.par_chunks_mut(strip_cells)).enumerate();
-        parts.for_each(|(s, (strip, waiting))| strip.fill(&compass, way, waiting, s * strip_cells));
+        let parts = self.strips.par_iter_mut().zip(self.donors.par_chunks_mut(strip_cells)).enumerate();
+        parts.for_each(|(s, (strip, donors))| strip.fill(&compass, way, donors, s * strip_cells));
         self.trunk.clear();
         for strip in &self.strips {
             for &i in &strip.leaving {
-                let mut c = compass.to(i as usize, way[i as usize]);
-                self.waiting[c] -= 1;
-                while self.waiting[c] == 0 {
-                    self.waiting[c] = PLACED;
+                let mut from = i as usize;
+                loop {
+                    let c = compass.to(from, way[from]);
+                    self.donors[c] &= !donor_bit(way[from]);
+                    if self.donors[c] != 0 {
+                        break;
+                    }
+                    self.donors[c] = PLACED;
                     self.trunk.push(c as u32);
                     if way[c] == ROOT {
                         break;
                     }
-                    c = compass.to(c, way[c]);
-                    self.waiting[c] -= 1;
+                    from = c;
                 }
             }
         }
@@ -180,24 +184,24 @@ impl Router {
 
 impl Strip {
     /// Follows the water from every source as long as nothing else has yet to arrive.
-    fn fill(&mut self, compass: &Compass, way: &[u8], waiting: &mut [u8], begin: usize) {
+    fn fill(&mut self, compass: &Compass, way: &[u8], donors: &mut [u8], begin: usize) {
         self.order.clear();
         self.leaving.clear();
-        for source in 0..waiting.len() {
+        for source in 0..donors.len() {
             let mut c = source;
-            while waiting[c] == 0 {
-                waiting[c] = PLACED;
+            while donors[c] == 0 {
+                donors[c] = PLACED;
                 let i = begin + c;
                 self.order.push(i as u32);
                 if way[i] == ROOT {
                     break;
                 }
                 let r = compass.to(i, way[i]).wrapping_sub(begin);
-                if r >= waiting.len() {
+                if r >= donors.len() {
                     self.leaving.push(i as u32);
                     break;
                 }
-                waiting[r] -= 1;
+                donors[r] &= !donor_bit(way[i]);
                 c = r;
             }
         }
@@ -266,11 +270,16 @@ const CLOSENESS: [f64; 8] = {
     closeness
 };
 
-fn count_donors(compass: &Compass, way: &[u8], y: usize, out: &mut [u8]) {
+/// The bit that a receiver has for a donor whose way is `way`.
+fn donor_bit(way: u8) -> u8 {
+    1 << opposite(way)
+}
+
+fn find_donors(compass: &Compass, way: &[u8], y: usize, out: &mut [u8]) {
     let width = compass.grid.width;
     let at_rim = |x: usize| {
-        let around = compass.around(y * width + x);
-        around.filter(|&(step, j)| way[j] == opposite(step)).count() as u8
+        let around = compass.around(y * width + x).filter(|&(step, j)| way[j] == opposite(step));
+        around.fold(0, |donors, (step, _)| donors | 1 << step)
     };
     match rows_beside(compass.grid, way, y) {
         Some((north, row, south)) if width > 2 => {
@@ -278,13 +287,42 @@ fn count_donors(compass: &Compass, way: &[u8], y: usize, out: &mut [u8]) {
             for (step, &(dx, dy)) in STEPS.iter().enumerate() {
                 let from = [north, row, south][(dy + 1) as usize];
                 let from = &from[(1 + dx) as usize..][..width - 2];
-                for (count, &w) in out[1..width - 1].iter_mut().zip(from) {
-                    *count += u8::from(w == opposite(step as u8));
+                for (donors, &w) in out[1..width - 1].iter_mut().zip(from) {
+                    *donors |= u8::from(w == opposite(step as u8)) << step;
                 }
             }
             out[0] = at_rim(0);
             out[width - 1] = at_rim(width - 1);
         }
         _ => (0..width).for_each(|x| out[x] = at_rim(x)),
+    }
+}
+
+/// Ways, and donors that agree with them.
+pub(super) struct Forest<'a> {
+    pub(super) compass: Compass,
+    pub(super) way: &'a mut [u8],
+    donors: &'a mut [u8],
+}
+
+impl Forest<'_> {
+    /// Gives a cell another way; tells which one it had.
+    pub(super) fn lead(&mut self, cell: usize, way: u8) -> u8 {
+        let had = std::mem::replace(&mut self.way[cell], way);
+        if had < ROOT {
+            self.donors[self.compass.to(cell, had)] &= !donor_bit(had);
+        }
+        self.donors[self.compass.to(cell, way)] |= donor_bit(way);
+        had
+    }
+
+    /// Calls `f` with each donor of a cell, in the order of [`STEPS`].
+    #[inline]
+    pub(super) fn each_donor(&self, cell: usize, mut f: impl FnMut(usize)) {
+        let mut steps = self.donors[cell];
+        while steps != 0 {
+            f(self.compass.to(cell, steps.trailing_zeros() as u8));
+            steps &= steps - 1;
+        }
     }
 }

@@ -9,8 +9,9 @@ use rayon::prelude::*;
 
 use super::{
     compass::{Compass, opposite},
-    router::{PIT, ROOT},
+    router::{Forest, PIT, ROOT},
 };
+use crate::grid::{Grid, for_each_row};
 
 /// Basins that one thread takes at a time.
 const BASINS: usize = 64;
@@ -33,6 +34,8 @@ pub(super) struct Spill {
     label: Vec<AtomicU32>,
     /// Cells of all basins, one basin after another.
     cells: Vec<u32>,
+    /// Cells where passes to basins of lower numbers may be.
+    border: Vec<bool>,
     /// Where the cells of basin `b` begin, at `b - 1`.
     first: Vec<usize>,
     /// Height to which each basin fills, m.
@@ -42,17 +45,18 @@ pub(super) struct Spill {
 
 impl Spill {
     /// Gives every pit a way out.
-    pub(super) fn drain(&mut self, compass: &Compass, z: &[f64], way: &mut [u8]) {
-        self.gather_basins(compass, z, way);
+    pub(super) fn drain(&mut self, z: &[f64], mut forest: Forest) {
+        self.gather_basins(z, &mut forest);
         if self.basins() == 0 {
             return;
         }
-        self.find_passes(compass, z);
+        self.find_borders(forest.compass.grid);
+        self.find_passes(&forest.compass, z);
         self.passes.par_sort_unstable_by(|a, b| {
             a.height_m.total_cmp(&b.height_m).then(a.cell.cmp(&b.cell)).then(a.way.cmp(&b.way))
         });
         let tree = lowest_tree(&self.passes, self.basins());
-        self.spill_along(&tree, compass, way);
+        self.spill_along(&tree, &mut forest);
     }
 
     /// Number of pits' basins.
@@ -72,13 +76,11 @@ impl Spill {
     }
 
     /// Collects what drains to each pit.
-    fn gather_basins(&mut self, compass: &Compass, z: &[f64], way: &mut [u8]) {
-        for &i in &self.cells {
-            self.label[i as usize] = AtomicU32::new(0);
-        }
+    fn gather_basins(&mut self, z: &[f64], forest: &mut Forest) {
         self.label.resize_with(z.len(), AtomicU32::default);
-        let pits = find_pits(compass, z, way);
-        let (label, way) = (&self.label, &*way);
+        self.label.par_iter_mut().for_each(|label| *label.get_mut() = 0);
+        let pits = find_pits(z, forest);
+        let (label, forest) = (&self.label, &*forest);
         // Basins share no cell, so that their labels can be written side by side.
         let blocks: Vec<(Vec<u32>, Vec<usize>)> = pits
             .par_chunks(BASINS)
@@ -87,7 +89,7 @@ impl Spill {
                 let (mut cells, mut sizes) = (Vec::new(), Vec::with_capacity(pits.len()));
                 for (&pit, basin) in pits.iter().zip(block * BASINS + 1..) {
                     let before = cells.len();
-                    gather_basin(pit, compass, way, |i| label[i].store(basin as u32, Relaxed), &mut cells);
+                    gather_basin(pit, forest, |i| label[i].store(basin as u32, Relaxed), &mut cells);
                     sizes.push(cells.len() - before);
                 }
                 (cells, sizes)
@@ -106,9 +108,26 @@ impl Spill {
         }
     }
 
+    /// Marks the cells that touch a basin of a lower number than their own.
+    fn find_borders(&mut self, grid: Grid) {
+        let (label, width) = (&self.label, grid.width);
+        self.border.resize(label.len(), false);
+        for_each_row(&mut self.border, width, |y, out| {
+            let [north, row, south] = [grid.row(y, -1), y, grid.row(y, 1)].map(|y| &label[y * width..][..width]);
+            let basin = |label: &AtomicU32| label.load(Relaxed);
+            let least = |x: usize| basin(&north[x]).min(basin(&row[x])).min(basin(&south[x]));
+            let (mut west, mut here) = (least(grid.column(0, -1)), least(0));
+            for (x, out) in out.iter_mut().enumerate() {
+                let east = least(grid.column(x, 1));
+                *out = west.min(here).min(east) < basin(&row[x]);
+                (west, here) = (here, east);
+            }
+        });
+    }
+
     /// The lowest pass between any two basins that touch.
     fn find_passes(&mut self, compass: &Compass, z: &[f64]) {
-        let (label, cells, first) = (&self.label, &self.cells, &self.first);
+        let (label, border, cells, first) = (&self.label, &self.border, &self.cells, &self.first);
         let all: Vec<usize> = (1..first.len()).collect();
         // Where the pass already known from the basin at hand to another one stands; what is older is not believed.
         let known = || vec![u32::MAX; first.len()];
@@ -118,7 +137,7 @@ impl Spill {
                 let mut passes: Vec<Pass> = Vec::new();
                 for &basin in basins {
                     let begin = passes.len();
-                    for &i in &cells[first[basin - 1]..first[basin]] {
+                    for &i in cells[first[basin - 1]..first[basin]].iter().filter(|&&i| border[i as usize]) {
                         compass.each(i as usize, |way, j| {
                             let other = label[j].load(Relaxed);
                             // Each pair is listed by the later of the two.
@@ -147,7 +166,7 @@ impl Spill {
     }
 
     /// Follows the tree from outside in: fills each basin to its pass, and turns the way from its pit to the pass round.
-    fn spill_along(&mut self, tree: &[Pass], compass: &Compass, way: &mut [u8]) {
+    fn spill_along(&mut self, tree: &[Pass], forest: &mut Forest) {
         let basins = self.basins() + 1;
         let (mut begin, mut touching) = (vec![0u32; basins + 1], vec![0u32; 2 * tree.len()]);
         for pass in tree {
@@ -178,9 +197,9 @@ impl Spill {
                 }
                 self.level_m[child] = self.level_m[basin].max(pass.height_m);
                 if inward {
-                    turn_round(pass.cell as usize, pass.way, compass, way);
+                    turn_round(pass.cell as usize, pass.way, forest);
                 } else {
-                    turn_round(compass.to(pass.cell as usize, pass.way), opposite(pass.way), compass, way);
+                    turn_round(forest.compass.to(pass.cell as usize, pass.way), opposite(pass.way), forest);
                 }
                 reached.push(child);
             }
@@ -189,16 +208,16 @@ impl Spill {
 }
 
 /// The cells without a lower neighbour, row by row. A flat floor is one pit: its other cells are led to its first one.
-fn find_pits(compass: &Compass, z: &[f64], way: &mut [u8]) -> Vec<usize> {
-    let width = compass.grid.width;
+fn find_pits(z: &[f64], forest: &mut Forest) -> Vec<usize> {
+    let (compass, width) = (forest.compass, forest.compass.grid.width);
     let (mut pits, mut floor) = (Vec::new(), Vec::new());
     for y in 0..compass.grid.height {
         let row = y * width..(y + 1) * width;
-        if !way[row.clone()].contains(&PIT) {
+        if !forest.way[row.clone()].contains(&PIT) {
             continue;
         }
         for pit in row {
-            if way[pit] != PIT {
+            if forest.way[pit] != PIT {
                 continue;
             }
             pits.push(pit);
@@ -207,8 +226,8 @@ fn find_pits(compass: &Compass, z: &[f64], way: &mut [u8]) -> Vec<usize> {
             let mut at = 0;
             while at < floor.len() {
                 compass.each(floor[at], |step, k| {
-                    if way[k] == PIT && z[k] == z[pit] && k != pit {
-                        way[k] = opposite(step);
+                    if forest.way[k] == PIT && z[k] == z[pit] && k != pit {
+                        forest.lead(k, opposite(step));
                         floor.push(k);
                     }
                 });
@@ -220,29 +239,27 @@ fn find_pits(compass: &Compass, z: &[f64], way: &mut [u8]) -> Vec<usize> {
 }
 
 /// Adds the cells of a pit's basin, and marks them.
-fn gather_basin(pit: usize, compass: &Compass, way: &[u8], mark: impl Fn(usize), cells: &mut Vec<u32>) {
+fn gather_basin(pit: usize, forest: &Forest, mark: impl Fn(usize), cells: &mut Vec<u32>) {
     let mut at = cells.len();
     mark(pit);
     cells.push(pit as u32);
     while at < cells.len() {
-        compass.each(cells[at] as usize, |step, k| {
-            if way[k] == opposite(step) {
-                mark(k);
-                cells.push(k as u32);
-            }
+        forest.each_donor(cells[at] as usize, |k| {
+            mark(k);
+            cells.push(k as u32);
         });
         at += 1;
     }
 }
 
 /// Leads the basin of `cell` out by `out`: the way from there down to the pit is turned round.
-fn turn_round(mut cell: usize, mut out: u8, compass: &Compass, way: &mut [u8]) {
+fn turn_round(mut cell: usize, mut out: u8, forest: &mut Forest) {
     loop {
-        let down = std::mem::replace(&mut way[cell], out);
+        let down = forest.lead(cell, out);
         if down == PIT || down == ROOT {
             return;
         }
-        cell = compass.to(cell, down);
+        cell = forest.compass.to(cell, down);
         out = opposite(down);
     }
 }
