@@ -172,10 +172,11 @@ impl<'a> Air<'a> {
         let row = y * self.grid.width;
         let wind = [self.east[y], 0.5 * (self.south[y] + self.south[y + 1])];
         let weather = self.below.zones[y].belt / STAY_S;
-        for i in row..row + self.grid.width {
+        for (x, &crest) in crest[row..][..self.grid.width].iter().enumerate() {
+            let i = row + x;
             let [gx, gy] = self.below.slope.data[i];
             let lift = wind[0] * gx + wind[1] * gy;
-            let come_down_m = crest[i] - self.below.height_m.data[i] as f64;
+            let come_down_m = crest - self.below.height_m.data[i] as f64;
             self.cells[i] = Cell {
                 rain_out: self.habits.lift_share * lift.max(0.0) / VAPOUR_M + weather * libm::exp(-come_down_m / DRY_M),
                 cloud_up: (-lift).max(0.0) / CLOUD_M,

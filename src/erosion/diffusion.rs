@@ -42,7 +42,9 @@ fn explicit(grid: Grid, value: &[f64], next: &mut [f64], share: f64, open: &[f32
         // A row beyond the rim is the rim's own: nothing crosses.
         let rows = [grid.row(y, -1), y, grid.row(y, 1)].map(|y| y * width..(y + 1) * width);
         let (value, open) = (rows.clone().map(|row| &value[row]), rows.map(|row| &open[row]));
-        explicit_inside(value, open, share, out);
+        if width > 2 {
+            explicit_inside(value, open, share, out);
+        }
         for x in [0, width - 1] {
             out[x] = spread(value, open, share, x, [grid.column(x, -1), grid.column(x, 1)]);
         }
@@ -55,8 +57,8 @@ fn explicit_inside(value: [&[f64]; 3], open: [&[f32]; 3], share: f64, out: &mut 
     let width = out.len();
     // Said once for the row, so that no cell has to look whether it is there.
     let (value, open) = (value.map(|row| &row[..width]), open.map(|row| &row[..width]));
-    for x in 1..width.saturating_sub(1) {
-        out[x] = spread(value, open, share, x, [x - 1, x + 1]);
+    for (x, out) in (1..width - 1).zip(&mut out[1..]) {
+        *out = spread(value, open, share, x, [x - 1, x + 1]);
     }
 }
 
