@@ -40,6 +40,7 @@ const CLOUD_M: f64 = 500.0;
 const DRY_M: f64 = 800.0;
 /// Share of the rain on land that evaporates there again and goes on with the wind.
 const RECYCLED: f64 = 0.4;
+
 /// Water that saturates the air over a sea of that temperature, kg/m² (Magnus's formula over water, gas law).
 pub fn saturation_mm(sea_degc: f64) -> f64 {
     let t = sea_degc.clamp(-60.0, 60.0);

@@ -225,24 +225,23 @@ impl ImportParams {
         }
         remarks
     }
+}
 
-    /// What a person should know of the heights once they are read, a line each.
-    fn findings(&self, map: &Heightmap) -> Vec<String> {
-        let [filled, all] = [map.filled, map.heights.len()];
-        let share = 100.0 * filled as f64 / all as f64;
-        let line = || {
-            format!("{}: {filled} of {all} cells ({share:.2} %) had no height and were filled in (no_data)", self.path)
-        };
-        Vec::from_iter((filled > 0).then(line))
-    }
+/// What a person should know of heights once they are read, a line each.
+fn findings(map: &Heightmap) -> Vec<String> {
+    let [filled, all] = [map.filled, map.heights.len()];
+    let share = 100.0 * filled as f64 / all as f64;
+    let line = || format!("{filled} of {all} cells ({share:.2} %) had no height and were filled in (no_data)");
+    Vec::from_iter((filled > 0).then(line))
+}
 
-    fn over(&self, map: Heightmap, grid: Grid) -> Field<f32> {
-        // Cells of one unit: only the numbers of cells matter for bringing one raster to another.
-        let edges = if grid.edges == Edges::Wrap { Edges::Wrap } else { Edges::Open };
-        let own = Grid { width: map.width, height: map.height, cell_m: 1.0, edges };
-        let heights = Field { grid: own, data: map.heights };
-        Field { grid, data: resample(&heights, grid.width, grid.height, Points::Centres) }
-    }
+/// Heights at the cells of a world.
+fn over(map: Heightmap, grid: Grid) -> Field<f32> {
+    // Cells of one unit: only the numbers of cells matter for bringing one raster to another.
+    let edges = if grid.edges == Edges::Wrap { Edges::Wrap } else { Edges::Open };
+    let own = Grid { width: map.width, height: map.height, cell_m: 1.0, edges };
+    let heights = Field { grid: own, data: map.heights };
+    Field { grid, data: resample(&heights, grid.width, grid.height, Points::Centres) }
 }
 
 struct Import {
@@ -264,8 +263,8 @@ impl Process for Import {
         context.check()?;
         let ground = self.placement.over(world)?;
         let map = self.params.read().map_err(|e| ProcessError::Unfit(e.to_string()))?;
-        self.findings = self.params.findings(&map);
-        let heights = self.params.over(map, world.grid);
+        self.findings = findings(&map);
+        let heights = over(map, world.grid);
         context.check()?;
         ground.put(&heights, world, context);
         Ok(Step::WHOLE)

@@ -19,7 +19,7 @@ use crate::grid::{Edges, Grid, for_each_row};
 pub const ROOT: u8 = 8;
 /// The way, until it spills, of a cell without a lower neighbour.
 pub(super) const PIT: u8 = 9;
-/// Marks a cell that has been put in order.
+/// Marks a cell that has been put in order. Eight donors look the same; nobody asks but for none.
 const PLACED: u8 = u8::MAX;
 /// Rows of a strip. Wider strips leave fewer trunks, more of them use more cores.
 const STRIP_ROWS: usize = 64;

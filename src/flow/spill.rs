@@ -1,5 +1,6 @@
 //! Depressions by their graph (Cordonnier, Bovy and Braun 2019): every pit has a basin, basins touch at passes, and the
-//! tree of lowest passes tells where each one spills. Work is done only where pits are.
+//! tree of lowest passes tells where each one spills. What follows water is done only where pits
+//! are; labels, borders and levels are looked at row by row over the whole map.
 //!
 //! The way from a pit to its pass is turned round, so that receivers stay neighbours.
 

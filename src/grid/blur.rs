@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::{Edges, Field, transposed};
 
-/// Columns that are smoothed side by side: a sum that runs down one of them waits for itself, sixteen do not.
+/// Rows or columns that are smoothed side by side: a sum that runs down one of them waits for itself, sixteen do not.
 const STRIP: usize = 16;
 
 /// The field smoothed with a Gaussian of `sigma_px` cells; the rim's value continues beyond it.

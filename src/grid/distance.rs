@@ -10,9 +10,9 @@ use super::{Field, Grid, for_each_row};
 /// For each cell the nearest marked one.
 #[derive(Clone, Debug)]
 pub struct Nearest {
-    /// Row-major index of the nearest marked cell, `u32::MAX` where none is marked.
+    /// Row-major index of the nearest marked cell, `u32::MAX` where none was found.
     pub index: Field<u32>,
-    /// Distance to it between cell centres, m; infinite where none is marked.
+    /// Distance to it between cell centres, m; infinite where none was found.
     pub distance_m: Field<f32>,
 }
 
@@ -64,7 +64,8 @@ pub fn nearest_within(grid: Grid, reach_m: f64, marked: impl Fn(usize) -> bool +
     Nearest { index, distance_m }
 }
 
-/// What [`nearest_feature`] finds from one cell, in growing distance from it: for few cells, near to what they look for.
+/// What [`nearest_feature`] finds from one cell, column by column away from it: for few cells, near to what they look
+/// for.
 pub fn nearest_from(grid: Grid, cell: usize, marked: impl Fn(usize) -> bool) -> Option<usize> {
     let (x, y) = grid.cell_of(cell);
     // By distance, then by column, then by row.

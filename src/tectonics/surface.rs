@@ -28,7 +28,6 @@ use super::{
 const WIDEST_VALLEY_M: f64 = 30e3;
 /// Thickening that leaves a third of the smoothing of what lay there before, m.
 const STRENGTH_M: f32 = 8_000.0;
-
 /// Standard deviation to which the shapes that borders press into the ground are smoothed, cells.
 const SHAPES_CELLS: f64 = 1.5;
 

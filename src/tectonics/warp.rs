@@ -91,7 +91,7 @@ impl Warp {
         let rim = (0..=RIM_PROBES).flat_map(|i| sides(spot(i))).map(|share| self.read_at(share * map_m));
         let (low, high) =
             rim.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
-        // Between two probes the rim bulges out by no more than its stretching allows; it's never stretched eightfold.
+        // The shortest link has five probes in a wavelength: between two of them the rim bulges out by far less than this.
         let bulge = 4.0 * map_m.max_element() / RIM_PROBES as f64;
         [low - bulge, high + bulge]
     }

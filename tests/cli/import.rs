@@ -71,10 +71,10 @@ fn few_bits_and_unknown_lengths_are_said() {
 #[test]
 fn what_had_no_height_is_counted() {
     let place = Place::new();
-    place.write("holes.asc", asc().replacen("cellsize 250\n0 10 20", "cellsize 250\n-9999 -9999 20", 1));
+    place.write("holes.asc", asc().replacen("250\n0 10 20", "250\nNODATA_value -9999\n-9999 -9999 20", 1));
     place.write("holes.toml", "[[stage]]\nkind = \"import\"\npath = \"holes.asc\"\n");
     let said = place.run(&["grow", "holes.toml", "--out", "w"]);
-    let note = "note: stage 'import': holes.asc: 2 of 800 cells (0.25 %) had no height and were filled in (no_data)";
+    let note = "note: stage 'import': 2 of 800 cells (0.25 %) had no height and were filled in (no_data)";
     assert!(said.code == 0 && said.err.contains(note), "{}", said.err);
     assert!(std::fs::read_to_string(place.path("w/manifest.json")).unwrap().contains("2 of 800 cells"));
     let quiet = place.run(&["grow", "holes.toml", "--out", "v", "--quiet"]);

@@ -139,14 +139,14 @@ impl Pipes {
         }
         let still = Still { start: &bed.start, source: &self.source, rate: &bed.rate };
         let ([fx, fy], [bx, by]) = (&mut self.flux, &mut self.back);
-        let row = Row {
+        let values = Row {
             change: &mut bed.change[..],
             depth: &mut self.depth,
             load: &mut self.load,
             flux: [fx, fy],
             back: [bx, by],
         };
-        let rows = Rows { row, rest: &mut self.rest, soft: &mut self.soft, books: &mut self.books };
+        let rows = Rows { values, rest: &mut self.rest, soft: &mut self.soft, books: &mut self.books };
         sweep(&self.rules, &beat, still, rows, &mut self.benches);
         self.trace(&beat);
         self.book(moved);
@@ -318,15 +318,14 @@ impl Family for Pipes {
         let flux = [whole("flux_x")?, whole("flux_y")?];
         let soft = if self.soft.is_empty() { Vec::new() } else { whole("soft")? };
         let back = if self.rules.mei { [whole("back_x")?, whole("back_y")?] } else { Default::default() };
-        if !self.past.is_empty() {
-            self.past = whole("past")?;
-        }
+        let past = if self.past.is_empty() { Vec::new() } else { whole("past")? };
         let (count, [deepest, fastest2]) = bytes.split_first_chunk::<8>().and_then(|(count, tail)| {
             let (a, tail) = tail.split_first_chunk::<4>()?;
             let (b, _) = tail.split_first_chunk::<4>()?;
             Some((u64::from_le_bytes(*count), [f32::from_le_bytes(*a), f32::from_le_bytes(*b)]))
         })?;
         (self.depth, self.load, self.rest, self.flux, self.soft, self.back) = (depth, load, rest, flux, soft, back);
+        self.past = past;
         (self.substeps, self.deepest, self.fastest2) = (count, deepest, fastest2);
         Some(())
     }

@@ -63,6 +63,7 @@ impl<'a> Sides<'a> {
     #[inline(always)]
     fn open(&self, i: usize) -> f32 {
         let (a, b) = (self.land[0][i], self.land[1][i]);
+        // Not `hi`: that would choose the place to read from.
         select_unpredictable(a > b, a, b)
     }
 }

@@ -147,6 +147,7 @@ fn gather(
         ground[i] = z;
         wet[i] = change[i] + d;
         let c = load[i] / hi(d, DRY_M);
+        // Not an `if`: what is read only where it is needed is slow to read.
         thick[i] = select_unpredictable(d > DRY_M, c, 0.0);
         under |= u32::from(z < sea_m);
     }

@@ -192,6 +192,9 @@ impl PipesParams {
         if self.momentum && self.flux == Flux::Mei {
             return Err("momentum needs flux = \"signed\"; set it, or momentum = false".to_owned());
         }
+        if self.lock == Lock::Coast && !self.sea {
+            return Err("lock = \"coast\" needs a sea; set sea = true, or lock = \"none\"".to_owned());
+        }
         if self.deep_m < self.shallow_m {
             return Err(format!(
                 "deep_m = {} is less than shallow_m = {}; raise deep_m or lower shallow_m",

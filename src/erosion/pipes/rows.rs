@@ -3,6 +3,8 @@
 //! The map is cut into bands of rows that are worked on side by side. A band reads two rows beyond either of its ends as they
 //! were before the step; of those it has copies, its halo.
 
+use rayon::prelude::*;
+
 use super::{bench::Bench, rules::Rules, sweep::Book};
 
 /// What a step changes, by cell: whole rows of the map, or one.
@@ -71,7 +73,7 @@ pub struct Still<'a> {
 
 /// Rows of the map that a step writes to.
 pub struct Rows<'a> {
-    pub row: Row<&'a mut [f32]>,
+    pub values: Row<&'a mut [f32]>,
     pub rest: &'a mut [f32],
     pub soft: &'a mut [f32],
     pub books: &'a mut [Book],
@@ -85,7 +87,7 @@ impl<'a> Rows<'a> {
         }
         let n = rows * width;
         Self {
-            row: self.row.each_mut().map(|all| first(all, n)),
+            values: self.values.each_mut().map(|all| first(all, n)),
             rest: first(&mut self.rest, n),
             soft: first(&mut self.soft, n),
             books: first(&mut self.books, rows),
@@ -127,7 +129,7 @@ impl Map<'_> {
     pub fn old(&self, y: isize) -> Row<&[f32]> {
         let (at, rows) = (y - self.first as isize, self.rows.books.len() as isize);
         if (0..rows).contains(&at) {
-            self.rows.row.each_ref().map(|all| cut(all, at as usize, self.width))
+            self.rows.values.each_ref().map(|all| cut(all, at as usize, self.width))
         } else {
             let beyond = if at < 0 { at + 2 } else { at - rows + 2 };
             self.halo.0[beyond as usize].each_ref().map(|all| all.as_slice())
@@ -144,9 +146,9 @@ pub fn bands<'a>(
 ) -> Vec<(Map<'a>, &'a mut Bench)> {
     let (height, count) = (rows.books.len(), benches.len());
     let begin = |band: usize| height * band / count;
-    for (band, (halo, _)) in benches.iter_mut().enumerate() {
-        halo.keep(rules, &rows.row, [begin(band), begin(band + 1)]);
-    }
+    let map = &rows.values;
+    let halos = benches.par_iter_mut().enumerate();
+    halos.for_each(|(band, (halo, _))| halo.keep(rules, map, [begin(band), begin(band + 1)]));
     let cut_off = |(band, (halo, bench)): (usize, &'a mut (Halo, Bench))| {
         let (first, width) = (begin(band), rules.width);
         let rows = rows.split_off(begin(band + 1) - first, width);

@@ -73,13 +73,13 @@ fn band(rules: &Rules, beat: &Beat, mut map: Map, bench: &mut Bench) {
 fn row(rules: &Rules, beat: &Beat, map: &mut Map, bench: &mut Bench, y: isize) {
     let (w, h) = (rules.width, rules.height as isize);
     let (at, to) = (y as usize - map.first, (y as usize - map.first) * w);
-    let Rows { row, rest, soft, books } = &mut map.rows;
+    let Rows { values, rest, soft, books } = &mut map.rows;
     let three = |row: fn(&Line) -> &Vec<f32>| [-1, 0, 1].map(|step| row(&bench.lines[slot(y + step)]).as_slice());
     let line = &bench.lines[slot(y)];
     let (x, north, south) = (&bench.x[slot(y)], &bench.y[slot(y)], &bench.y[slot(y + 1)]);
-    let (depth, load) = (&mut row.depth[to..][..w], &mut row.load[to..][..w]);
-    let [out_x, out_y] = row.flux.each_mut().map(|all| &mut all[to..][..w]);
-    let (bed, change) = (&mut bench.bed[..w], &mut row.change[to..][..w]);
+    let (depth, load) = (&mut values.depth[to..][..w], &mut values.load[to..][..w]);
+    let [out_x, out_y] = values.flux.each_mut().map(|all| &mut all[to..][..w]);
+    let (bed, change) = (&mut bench.bed[..w], &mut values.change[to..][..w]);
     let ground = three(|l| &l.ground);
     let before = Before {
         ground,
@@ -116,8 +116,8 @@ fn row(rules: &Rules, beat: &Beat, map: &mut Map, bench: &mut Bench, y: isize) {
     if rules.mei {
         out_x.copy_from_slice(&x.ahead[..w]);
         out_y.copy_from_slice(&north.ahead[..w]);
-        row.back[0][to..][..w].copy_from_slice(&x.back[..w]);
-        row.back[1][to..][..w].copy_from_slice(&north.back[..w]);
+        values.back[0][to..][..w].copy_from_slice(&x.back[..w]);
+        values.back[1][to..][..w].copy_from_slice(&north.back[..w]);
     }
     let mut over = [0.0; 2];
     if rules.edges == Edges::Open {

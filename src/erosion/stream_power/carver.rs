@@ -195,7 +195,7 @@ impl Carver {
         }
     }
 
-    /// The water that each cell has of its own.
+    /// Begins the ratios with the water that each cell has of its own, m² of catchment.
     fn rain(&mut self, forcing: &Forcing) {
         let cell_m2 = self.grid().cell_area_m2() / REFERENCE_RAIN_MM_PER_YR;
         let water_m2 = &mut self.ratio;
@@ -370,6 +370,7 @@ impl Carver {
             None => cells.for_each(|(open, &z)| *open = if z >= sea_m { 1.0 } else { 0.0 }),
         }
         let spread_m2 = law.diffusivity_m2_per_yr * years;
+        // The surface has been read for the last time in this step, and gives room.
         diffuse(self.router.grid(), height_m, spread_m2, &self.open, &mut self.surface_m);
         let mut left_m = 0.0;
         for (i, z) in fixed {

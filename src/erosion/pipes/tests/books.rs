@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::erosion::pipes::advect::Tracer;
+use crate::erosion::{pipes::advect::Tracer, stage::Lock};
 
 /// Runs to the end in a few parts and gives how far the books of rock and water are from closing, by what was moved.
 fn gaps(mut bed: Bed, params: PipesParams) -> ([f64; 2], Bed, Pipes) {
@@ -42,6 +42,15 @@ fn sediment_is_kept_by_all_ways() {
             assert!((sum_f64(&bed.change) * 36.0 - before).abs() < 1e-2 && pipes.carried_m3().abs() < 1e-2);
         }
     }
+}
+
+#[test]
+fn land_without_a_sea_is_carved_too() {
+    let params = PipesParams { sea: false, ..storm(Sediment::Flux) };
+    let ([rock, _], after, _) = gaps(bed(48, 40, 6.0, Edges::Open, rough), params.clone());
+    assert!(rock < 1e-6 && after.change.iter().any(|v| v.abs() > 0.01), "{rock:e}");
+    let coast = PipesParams { lock: Lock::Coast, ..params };
+    assert!(coast.check(&after.grid).unwrap_err().contains("needs a sea"));
 }
 
 #[test]
