@@ -210,6 +210,10 @@ impl ImportParams {
                 self.path
             ));
         }
+        // Of its own sample the program knows.
+        if self.path.starts_with("sample:") {
+            return remarks;
+        }
         let said = Sidecar::beside(&self.path).filter(|said| said.fits(header.width, header.height));
         let levels = said.as_ref().filter(|_| !header.metres).and_then(|said| Some((said.black_m?, said.white_m?)));
         if let Some((black_m, white_m)) = levels.filter(|_| self.low_m.is_none() && self.high_m.is_none()) {

@@ -10,6 +10,8 @@ use serde::Deserialize;
 
 /// More than any of ours has, bytes.
 const MOST_BYTES: u64 = 1 << 20;
+/// The one beside the sample `my-heights.png`.
+const SAMPLE: &str = include_str!("../../presets/my-heights.png.json");
 
 /// What it says of one heightmap.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -38,8 +40,8 @@ pub(super) struct Sidecar {
 impl Sidecar {
     /// The one beside a heightmap, where there is one.
     pub fn beside(path: &str) -> Option<Self> {
-        if path.starts_with("sample:") {
-            return None;
+        if let Some(name) = path.strip_prefix("sample:") {
+            return Self::parse(SAMPLE).filter(|_| name == "my-heights.png");
         }
         let path = Path::new(path);
         let name = path.file_name()?.to_string_lossy();
@@ -81,6 +83,14 @@ impl Sidecar {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_sample_says_how_high_it_is() {
+        let said = Sidecar::beside("sample:my-heights.png").unwrap();
+        assert!(said.fits(288, 216) && said.cell_m()[0] == said.cell_m()[1]);
+        assert_eq!((said.black_m, said.white_m), (Some(-620.0), Some(4770.0)));
+        assert_eq!(Sidecar::beside("sample:my-continents.png"), None);
+    }
 
     const OURS: &str = r#"{"upthrust": "0.1.0", "layer": "height", "size": [64, 32], "extent_m": [6400.0, 3200.0],
         "black_m": -200.5, "white_m": 1800.0, "byte_order": "big endian", "first_row": "north", "seed": 7}"#;

@@ -36,6 +36,18 @@ fn a_flag_brings_a_file_and_the_file_its_size() {
 }
 
 #[test]
+fn a_preset_takes_metres_as_they_are() {
+    let place = Place::new();
+    place.write("dem.asc", asc());
+    let said = place.run(&["grow", "erode-my-map", "--set", "import.path=dem.asc", "--out", "w"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let bare = place.run(&["grow", "erode-my-map", "--set", "import.path=dem.asc", "--until", "import", "--out", "v"]);
+    assert_eq!(bare.code, 0, "{}", bare.err);
+    let said = place.run(&["inspect", "v"]);
+    assert!(said.out.contains("height      0.0 to 390.0 m"), "{}", said.out);
+}
+
+#[test]
 fn a_file_that_knows_its_cells_sets_the_extent() {
     let place = Place::new();
     std::fs::create_dir(place.path("maps")).unwrap();
