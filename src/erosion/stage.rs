@@ -275,7 +275,8 @@ impl<T: FamilyParams> Process for Stage<T> {
                 .unwrap_or_else(|| State { fields: Vec::new(), blob: self.done.to_le_bytes().to_vec() });
         };
         let Saved { fields, blob } = run.solver.save();
-        let lay = |name: &str, data: &[f32]| (name.to_owned(), Field { grid: run.bed.grid, data: data.to_vec() });
+        let grid = run.bed.grid;
+        let lay = |name: &str, data: &[f32]| (name.to_owned(), Field { grid, data: data.to_vec() });
         let mut all = vec![
             lay("start", &run.bed.start),
             lay("change", &run.bed.change),
@@ -284,7 +285,7 @@ impl<T: FamilyParams> Process for Stage<T> {
         if !run.bed.rate.is_empty() {
             all.push(lay("rate", &run.bed.rate));
         }
-        all.extend(fields.iter().map(|(name, data)| lay(&own(name), data)));
+        all.extend(fields.into_iter().map(|(name, data)| (own(name), Field { grid, data })));
         let blob = [&self.done.to_le_bytes()[..], &run.bed.sea_m.to_le_bytes(), &blob].concat();
         State { fields: all, blob }
     }

@@ -85,6 +85,11 @@ impl Stage {
         defaults.is_some_and(|keys| keys.keys().any(|key| key.starts_with("duration_")))
     }
 
+    /// Whether its time is that of weather and not of the Earth: minutes or hours of water, which move no mountain.
+    pub fn takes_hours(&self) -> bool {
+        ["duration_min", "duration_h"].iter().any(|key| self.kind.defaults.get(key).is_some())
+    }
+
     /// A fresh process.
     pub fn build(&self) -> Result<Box<dyn Process>, ProcessError> {
         let leads = !self.coupled.is_empty();
@@ -260,6 +265,12 @@ impl Plan {
             }
         }
         small
+    }
+
+    /// The same without what takes hours: its ground at about the same heights, in far less time.
+    pub fn without_hours(mut self) -> Self {
+        self.stages.iter_mut().filter(|stage| stage.takes_hours()).for_each(|stage| stage.enabled = false);
+        self
     }
 
     /// The map with the most cells there is in the run.

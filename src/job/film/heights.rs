@@ -4,7 +4,7 @@ use std::{fs, path::PathBuf, sync::atomic::AtomicBool};
 
 use serde::Serialize;
 
-use super::request::range_over_sea;
+use super::range::range_over_sea;
 use crate::{
     export::{self, HeightRange, video::NumberedFolder},
     job::JobError,

@@ -10,6 +10,7 @@
 mod clock;
 mod heights;
 mod pace;
+mod range;
 mod replay;
 mod request;
 mod sink;

@@ -5,7 +5,7 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-use super::{Film, FilmPlan, FilmRequest, pace, request};
+use super::{Film, FilmPlan, FilmRequest, pace, range};
 use crate::{
     job::{Event, JobError, open_world},
     recipe::{Overrides, Plan, Source},
@@ -88,8 +88,8 @@ fn plan(
         }
         None => pace::equal(stages, per_second),
     };
-    if !recipe.is_some_and(|recipe| recipe.running().any(|(_, stage)| stage.takes_time())) {
-        planned.animation.range_m = request::range_of(world);
+    if !recipe.is_some_and(|recipe| recipe.running().any(|(_, stage)| stage.kind.leads)) {
+        planned.animation.range_m = range::range_of(world);
     }
     Ok(planned)
 }

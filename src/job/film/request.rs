@@ -8,21 +8,15 @@ use std::{
 use super::{
     HOLD_S,
     pace::{Clip, clips},
+    range::{EARTH_M, range_over_sea},
 };
 use crate::{
     export::video::{Encoder, Format, Rate, Settings},
-    job::{JobError, grow::run, picture},
+    job::{JobError, picture},
     recipe::Plan,
     relief::{CLIMATE, View, film},
-    world::{Layer, World},
+    world::Layer,
 };
-
-/// Longer side of the trial run that finds how high a world will be.
-const TRIAL_SIDE: usize = 128;
-/// Room above and below what the trial finds, as a share of its range.
-const MARGIN: f64 = 0.25;
-/// Where plates move, heights are those of the Earth, m over the sea.
-const EARTH_M: [f64; 2] = [-11_000.0, 9_000.0];
 
 /// A film as it is asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -156,24 +150,6 @@ fn check_layer(made: &[Layer], layer: Layer) -> Result<(), JobError> {
         names.join(", ")
     );
     Err(JobError::Refused(what))
-}
-
-/// Heights to be expected, m over the sea: Earth's where plates move, else those of a small trial and some more.
-pub fn range_over_sea(plan: &Plan, until: Option<usize>, cancel: &AtomicBool) -> Result<[f64; 2], JobError> {
-    let running = || plan.running().filter(|(i, _)| until.is_none_or(|end| *i <= end));
-    if running().any(|(_, stage)| stage.takes_time()) {
-        return Ok(EARTH_M);
-    }
-    let small = plan.shrunk(TRIAL_SIDE);
-    let (world, _) = run(&small, until, cancel, &mut |_| ())?;
-    Ok(range_of(&world))
-}
-
-/// The heights of a world and some more, m over its sea.
-pub(super) fn range_of(world: &World) -> [f64; 2] {
-    let (low, high) = world.height().range().map_or((0.0, 1.0), |(low, high)| (f64::from(low), f64::from(high)));
-    let margin = MARGIN * (high - low).max(1.0);
-    [low - margin - world.sea_level_m, high + margin - world.sea_level_m]
 }
 
 #[cfg(test)]
