@@ -1,24 +1,27 @@
 //! Draws `docs/gallery/`: every preset, the plates of `collision` in motion, what else its world knows, its waters, a
-//! continent and a valley in it, one start eroded five ways, and the report that sets the default world beside Earth.
+//! continent and a valley in it, one start eroded five ways, a film of a canyon, and the report that sets the default world
+//! beside Earth.
 //!
-//! `cargo run --release --example gallery` draws it all; names of pictures after `--` draw only those.
+//! `cargo run --release --example gallery` draws it all; names of pictures after `--` draw only those. Films need ffmpeg.
 
 use std::{
     error::Error,
     fmt::Write as _,
     path::{Path, PathBuf},
+    process::Command,
     sync::atomic::AtomicBool,
 };
 
 use image::{RgbImage, codecs::jpeg::JpegEncoder};
 use upthrust::{
+    job::{self, film::FilmRequest},
     measure::{
         self,
         report::{self, Subject},
     },
     recipe::{self, Overrides, Plan, Preset},
     relief::{self, Options, View},
-    timeline::{Interest, Moment, Sink, Timeline},
+    timeline::{self, Interest, Moment, Sink, Timeline},
     world::{Layer, World},
 };
 
@@ -60,6 +63,9 @@ fn main() -> Outcome<()> {
     if wants("five-ways") {
         page.draw("five-ways", &five_ways()?)?;
     }
+    if wants("canyon-film") {
+        page.film("canyon", "canyon-film")?;
+    }
     if wants("report") {
         page.report()?;
     }
@@ -86,6 +92,20 @@ impl Page {
         }
         println!("{name}: {} x {}, {} kB", picture.width(), picture.height(), bytes.len() / 1000);
         Ok(std::fs::write(self.folder.join(name).with_extension("jpg"), bytes)?)
+    }
+
+    /// A preset as it grows: a moving picture that pages show, small enough to be kept.
+    fn film(&self, preset: &str, name: &str) -> Outcome<()> {
+        let preset = recipe::find_preset(preset).ok_or_else(|| format!("there is no preset '{preset}'"))?;
+        let folder = std::env::temp_dir().join(format!("upthrust-{name}-{}", std::process::id()));
+        let film = folder.join("film.mp4");
+        job::grow(&request(preset, &folder)?, &AtomicBool::new(false), &mut |_| ())?;
+        let small = ["-vf", "fps=10", "-loop", "0", "-c:v", "libwebp_anim", "-quality", "45", "-y"];
+        let mut ffmpeg = Command::new("ffmpeg");
+        ffmpeg.args(["-v", "error", "-i"]).arg(&film).args(small).arg(self.folder.join(name).with_extension("webp"));
+        let done = ffmpeg.status()?;
+        std::fs::remove_dir_all(&folder)?;
+        if done.success() { Ok(()) } else { Err(format!("ffmpeg could not make {name}").into()) }
     }
 
     /// The default world beside Earth, with the plots in a folder of their own.
@@ -122,23 +142,28 @@ impl Page {
             (
                 "waters",
                 "Rain, rivers, lakes and what grows",
-                "The same continent and its weather. Westerly wind brings the rain; behind the ranges it is dry. Runoff                  feeds the rivers, drawn as wide as their discharge; lakes lie where the plates closed a basin.",
+                "The same continent and its weather. Westerly wind brings the rain; behind the ranges it is dry. Runoff \
+                 feeds the rivers, drawn as wide as their discharge; lakes lie where the plates closed a basin.",
             ),
             (
                 "three-scales",
                 "From continent to valley",
-                "Preset `continent-to-valley`: 1,000 km, then 64 km of it, then 5 km, each carved anew by the rivers that                  come in over its rim.",
+                "Preset `continent-to-valley`: 1,000 km, then 64 km of it, then 5 km, each carved anew by the rivers \
+                 that come in over its rim.",
             ),
             (
                 "five-ways",
                 "One start, eroded five ways",
                 "Fractal hills a kilometre across, and what each family of erosion makes of them by its defaults; in \
-                 the second row what it wore off. [Erosion](../erosion.md) says which is for what.",
+                 the second row what it wore off, in the third how a year's rain would run. [Erosion](../erosion.md) says \
+                 which is for what.",
             ),
         ];
         for (name, title, caption) in sheets {
             writeln!(text, "## {title}\n\n![{title}]({name}.jpg)\n\n{caption}\n")?;
         }
+        text += "## A canyon\n\n![A canyon being cut](canyon-film.webp)\n\n`upthrust grow canyon --video canyon.mp4 --clock`: a \
+                 third of a million years of rivers, then a flood, then slides.\n\n";
         text += "## Beside Earth\n\nThe default world's landscape, measured: [report](report.md), as `upthrust inspect WORLD \
                  --report FILE.md` writes it.\n\n";
         text += "## Presets\n\n";
@@ -149,6 +174,25 @@ impl Page {
         }
         Ok(std::fs::write(self.folder.join("README.md"), text.trim_end().to_owned() + "\n")?)
     }
+}
+
+/// A preset at its own size with a small film in its folder.
+fn request(preset: &Preset, folder: &Path) -> Outcome<job::Request> {
+    Ok(job::Request {
+        plan: Plan::new(&preset.source(), &Overrides::default())?,
+        out: Some(folder.to_owned()),
+        existing: job::Existing::Replace,
+        checkpoint_every: timeline::EVERY,
+        until: None,
+        film: Some(FilmRequest {
+            size: Some([640, 360]),
+            view: "relief".to_owned(),
+            clock: true,
+            ..FilmRequest::default()
+        }),
+        frames: None,
+        keep: None,
+    })
 }
 
 fn plan(preset: &Preset, side: usize) -> Outcome<Plan> {
@@ -251,10 +295,9 @@ fn three_scales() -> Outcome<RgbImage> {
     Ok(relief::contact_sheet(&panels, panels.len()))
 }
 
-/// The same hills as they were and after each family, and below what was worn off: a metre on the mean of the map.
+/// The same hills as they were and after each family; below what was worn off, a metre on the mean of the map, and how
+/// rain would run.
 fn five_ways() -> Outcome<RgbImage> {
-    const HILLS: &str = "[world]\nseed = 4\nextent_km = 1.0\nsea_level_m = -1000.0\n[[stage]]\nkind = 'fbm'\n\
-                         height_m = 110.0\nbase_m = 300.0\nwavelength_km = 0.7\nhurst = 1.0\n";
     const WAYS: [(&str, &str); 6] = [
         ("the start", ""),
         ("thermal", "talus_angle_deg = 25.0\nrock_angle_deg = 30.0\n"),
@@ -264,19 +307,13 @@ fn five_ways() -> Outcome<RgbImage> {
         ("droplets", "duration_yr = 5500.0\n"),
     ];
     let options = Options::bare(PANEL);
-    let (mut above, mut below) = (Vec::new(), Vec::new());
+    let mut rows = [const { Vec::new() }; 3];
     for (name, params) in WAYS {
-        let stage = if name.contains(' ') { String::new() } else { format!("[[stage]]\nkind = '{name}'\n{params}") };
-        let source = recipe::Source {
-            name: name.to_owned(),
-            file: "five-ways".to_owned(),
-            folder: PathBuf::new(),
-            text: format!("{HILLS}{stage}"),
-        };
-        let overrides = Overrides { size: Some("256".to_owned()), ..Overrides::default() };
-        let world = grow(&Plan::new(&source, &overrides)?, &mut [])?;
-        above.push((name.to_owned(), relief::map(&world, &View::Relief, &options)?));
-        let (seen, label) = match world.layer(Layer::Wear).filter(|_| !stage.is_empty()) {
+        let eroded = !name.contains(' ');
+        let stage = if eroded { format!("[[stage]]\nkind = '{name}'\n{params}") } else { String::new() };
+        let world = grow(&hills(&stage)?, &mut [])?;
+        let flowing = grow(&hills(&format!("{stage}[[stage]]\nkind = 'rivers'\ncarve = 0.0\n"))?, &mut [])?;
+        let (seen, label) = match world.layer(Layer::Wear).filter(|_| eroded) {
             Some(wear) => {
                 let sum: f64 = wear.data.iter().map(|&v| v as f64).sum();
                 let most = wear.range().map_or(0.0, |(_, most)| most);
@@ -285,10 +322,25 @@ fn five_ways() -> Outcome<RgbImage> {
             }
             None => (Layer::Slope, "slope".to_owned()),
         };
-        below.push((label, relief::map(&world, &View::Layer(seen), &options)?));
+        rows[0].push((name.to_owned(), relief::map(&world, &View::Relief, &options)?));
+        rows[1].push((label, relief::map(&world, &View::Layer(seen), &options)?));
+        rows[2].push(("flow".to_owned(), relief::map(&flowing, &View::Layer(Layer::Discharge), &options)?));
     }
-    above.append(&mut below);
-    Ok(relief::contact_sheet(&above, WAYS.len()))
+    Ok(relief::contact_sheet(&rows.concat(), WAYS.len()))
+}
+
+/// Hills a kilometre across, and what a stage makes of them.
+fn hills(stage: &str) -> Outcome<Plan> {
+    const HILLS: &str = "[world]\nseed = 4\nextent_km = 1.0\nsea_level_m = -1000.0\n[[stage]]\nkind = 'fbm'\n\
+                         height_m = 110.0\nbase_m = 300.0\nwavelength_km = 0.7\nhurst = 1.0\n";
+    let source = recipe::Source {
+        name: "five-ways".to_owned(),
+        file: "five-ways".to_owned(),
+        folder: PathBuf::new(),
+        text: format!("{HILLS}{stage}"),
+    };
+    let overrides = Overrides { size: Some("256".to_owned()), ..Overrides::default() };
+    Ok(Plan::new(&source, &overrides)?)
 }
 
 fn layers() -> Outcome<RgbImage> {
