@@ -27,6 +27,8 @@ use upthrust::{
 
 /// Cells a side of the presets' worlds, and pixels of their maps.
 const SIDE: usize = 512;
+/// Pixels of the panels on a sheet of eighteen.
+const SMALL_PANEL: usize = 208;
 /// Cells a side of the worlds on sheets, and pixels of their panels.
 const PANEL: usize = 320;
 const PANELS: usize = 6;
@@ -100,7 +102,7 @@ impl Page {
         let folder = std::env::temp_dir().join(format!("upthrust-{name}-{}", std::process::id()));
         let film = folder.join("film.mp4");
         job::grow(&request(preset, &folder)?, &AtomicBool::new(false), &mut |_| ())?;
-        let small = ["-vf", "fps=10", "-loop", "0", "-c:v", "libwebp_anim", "-quality", "45", "-y"];
+        let small = ["-vf", "fps=10", "-loop", "0", "-c:v", "libwebp_anim", "-quality", "38", "-y"];
         let mut ffmpeg = Command::new("ffmpeg");
         ffmpeg.args(["-v", "error", "-i"]).arg(&film).args(small).arg(self.folder.join(name).with_extension("webp"));
         let done = ffmpeg.status()?;
@@ -154,8 +156,7 @@ impl Page {
             (
                 "five-ways",
                 "One start, eroded five ways",
-                "Fractal hills a kilometre across, and what each family of erosion makes of them by its defaults; in \
-                 the second row what it wore off, in the third how a year's rain would run. [Erosion](../erosion.md) says \
+                "Fractal hills a kilometre across, and what each family of erosion makes of them; in the second row what it wore off, in the third how a year's rain would run. [Erosion](../erosion.md) says \
                  which is for what.",
             ),
         ];
@@ -302,11 +303,11 @@ fn five_ways() -> Outcome<RgbImage> {
         ("the start", ""),
         ("thermal", "talus_angle_deg = 25.0\nrock_angle_deg = 30.0\n"),
         ("hydraulic_cells", "morphological_factor = 28000.0\n"),
-        ("pipes", "duration_h = 1.25\nwet_talus_angle_deg = 30.0\n"),
+        ("pipes", "duration_h = 2.75\ntalus_angle_deg = 50.0\n"),
         ("rain_particles", "duration_min = 2.0\nmorphological_factor = 72.0\n"),
         ("droplets", "duration_yr = 5500.0\n"),
     ];
-    let options = Options::bare(PANEL);
+    let options = Options::bare(SMALL_PANEL);
     let mut rows = [const { Vec::new() }; 3];
     for (name, params) in WAYS {
         let eroded = !name.contains(' ');

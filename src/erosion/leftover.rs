@@ -2,12 +2,17 @@
 //!
 //! A cell takes as much as fills it to its highest neighbour; the rest spreads to all sides and tries again.
 
+use multiversion::multiversion;
+use rayon::prelude::*;
+
 use crate::grid::{Edges, for_each_row, sum_f64};
 
 use super::bed::Bed;
 
 /// Share of a difference that passes between two neighbours in a pass; stable to 1/8.
 const SPREAD: f32 = 0.1;
+/// Cells that one thread works on at a time.
+const RUN: usize = 8192;
 /// Passes before what is left is spread over the whole map.
 const PASSES: usize = 128;
 /// Most that a cell gets at once where it cannot be helped, m.
@@ -15,17 +20,22 @@ const THIN_M: f64 = 1e-3;
 
 /// Lays down what fits of `rest`, m of rock by cell, in at most so many passes. What has found no room stays in `rest`.
 pub fn lay_down(bed: &mut Bed, rest: &mut [f32], passes: usize) {
-    let mut buffer = Vec::new();
-    for _ in 0..passes {
-        // A thin coat makes no needle: not worth another pass.
-        if rest.iter().all(|&v| (v.abs() as f64) < THIN_M) {
-            return;
-        }
-        if buffer.is_empty() {
-            buffer = vec![0.0f32; rest.len()];
-        }
-        fill(bed, rest, &mut buffer);
-        spread(bed, rest, &mut buffer);
+    // A thin coat makes no needle: not worth another pass.
+    let thin = |rest: &[f32]| rest.iter().all(|&v| (v.abs() as f64) < THIN_M);
+    if passes == 0 || thin(rest) {
+        return;
+    }
+    let mut buffer = vec![0.0f32; rest.len()];
+    let (mut held, mut other) = (rest, &mut buffer[..]);
+    let mut done = 0;
+    while done < passes && !thin(held) {
+        fill(bed, held, other);
+        spread(bed, held, other);
+        std::mem::swap(&mut held, &mut other);
+        done += 1;
+    }
+    if done % 2 == 1 {
+        other.copy_from_slice(held);
     }
 }
 
@@ -76,54 +86,136 @@ fn around(bed: &Bed, x: usize, y: usize) -> [usize; 8] {
 
 /// Every cell takes what fills it to its highest neighbour, in the sea no more than to the sea's level.
 fn fill(bed: &mut Bed, rest: &mut [f32], taken: &mut [f32]) {
-    let width = bed.grid.width;
-    let frozen = &*bed;
-    let held = &*rest;
+    let (width, height) = (bed.grid.width, bed.grid.height);
+    let (frozen, held) = (&*bed, &*rest);
     for_each_row(taken, width, |y, row| {
-        for (x, taken) in row.iter_mut().enumerate() {
+        if y > 0 && y + 1 < height {
+            take_within(frozen, held, y, row);
+        }
+        for x in rim(width, height, y) {
             let i = y * width + x;
-            *taken = 0.0;
-            if held[i] == 0.0 {
-                continue;
-            }
             let height = frozen.height(i);
-            let mut top = around(frozen, x, y).iter().map(|&j| frozen.height(j)).fold(height, f32::max);
-            if height < frozen.sea_m {
-                top = top.max(height + 0.5 * (frozen.sea_m - height)).min(frozen.sea_m);
-            }
-            let most = (0.5 * (top - height)).min(frozen.room(height)) * frozen.rate(i);
-            *taken = held[i].clamp(-most, most);
+            let top = around(frozen, x, y).iter().map(|&j| frozen.height(j)).fold(height, f32::max);
+            row[x] = fitting(held[i], [height, top], frozen.sea_m, frozen.room(height), frozen.rate(i));
         }
     });
-    for (i, &by) in taken.iter().enumerate() {
-        put(bed, rest, i, by);
+    let (taken, start, sea) = (&*taken, &bed.start, bed.locked.then_some(bed.sea_m));
+    bed.change.par_chunks_mut(RUN).zip(rest.par_chunks_mut(RUN)).enumerate().for_each(|(k, (change, rest))| {
+        let of = k * RUN..k * RUN + rest.len();
+        put_all(change, rest, &start[of.clone()], &taken[of], sea);
+    });
+}
+
+/// Cells of row `y` whose neighbours are not all on the map, or on its other side.
+fn rim(width: usize, height: usize, y: usize) -> impl Iterator<Item = usize> {
+    let step = if y > 0 && y + 1 < height && width > 1 { width - 1 } else { 1 };
+    (0..width).step_by(step)
+}
+
+/// What cells take within row `y`, which is not at the rim.
+#[multiversion(targets("x86_64+avx2"))]
+fn take_within(bed: &Bed, held: &[f32], y: usize, taken: &mut [f32]) {
+    let held = within(held, bed.grid.width, y)[4];
+    if bed.rate.is_empty() {
+        take_at(bed, held, y, taken, |_| 1.0);
+    } else {
+        let rate = within(&bed.rate, bed.grid.width, y)[4];
+        take_at(bed, held, y, taken, |x| rate[x]);
     }
 }
 
-/// Moves `by` from the rest of a cell to its ground, unless land would become sea or sea land that must not.
-fn put(bed: &mut Bed, rest: &mut [f32], i: usize, by: f32) {
-    let (old, start) = (bed.change[i], bed.start[i]);
+/// The same under a rate.
+#[inline(always)]
+fn take_at(bed: &Bed, held: &[f32], y: usize, taken: &mut [f32], rate: impl Fn(usize) -> f32) {
+    let (starts, changes) = (within(&bed.start, bed.grid.width, y), within(&bed.change, bed.grid.width, y));
+    let (sea_m, locked) = (bed.sea_m, bed.locked);
+    for (x, taken) in taken[1..][..held.len()].iter_mut().enumerate() {
+        let height = starts[4][x] + changes[4][x];
+        let mut top = height;
+        for k in 0..9 {
+            let other = starts[k][x] + changes[k][x];
+            top = if other > top { other } else { top };
+        }
+        let most = if locked { 0.5 * (height - sea_m).abs() } else { f32::INFINITY };
+        *taken = fitting(held[x], [height, top], sea_m, most, rate(x));
+    }
+}
+
+/// The cells of row `y` of a raster but its first and last, and the eight cells around each: ninefold, the row itself in
+/// the middle.
+#[inline(always)]
+fn within(of: &[f32], width: usize, y: usize) -> [&[f32]; 9] {
+    let many = width.saturating_sub(2);
+    let mut all = [&[][..]; 9];
+    for (k, all) in all.iter_mut().enumerate() {
+        *all = &of[(y + k / 3 - 1) * width..][..width][(k % 3).min(width - many)..][..many];
+    }
+    all
+}
+
+/// How much of what is held finds room in a cell of a height below the highest of its neighbours, where a height may
+/// change by `most` at once.
+#[inline(always)]
+fn fitting(held: f32, [height, top]: [f32; 2], sea_m: f32, most: f32, rate: f32) -> f32 {
+    let in_sea = top.max(height + 0.5 * (sea_m - height)).min(sea_m);
+    let top = if height < sea_m { in_sea } else { top };
+    let most = (0.5 * (top - height)).min(most) * rate;
+    held.max(-most).min(most)
+}
+
+/// Moves what is taken from the rest of cells to their ground.
+#[multiversion(targets("x86_64+avx2"))]
+fn put_all(change: &mut [f32], rest: &mut [f32], start: &[f32], taken: &[f32], sea: Option<f32>) {
+    for (((change, rest), &start), &by) in change.iter_mut().zip(rest).zip(start).zip(taken) {
+        let new = moved(*change, start, by, sea);
+        *rest -= new - *change;
+        *change = new;
+    }
+}
+
+/// The change of a cell with `by` more, unless land would become sea or sea land that must not.
+#[inline(always)]
+fn moved(old: f32, start: f32, by: f32, sea: Option<f32>) -> f32 {
     let new = old + by;
     // Half the way may round to the whole.
-    if by != 0.0 && !(bed.locked && (start + old < bed.sea_m) != (start + new < bed.sea_m)) {
-        bed.change[i] = new;
-        rest[i] -= new - old;
-    }
+    let crosses = |sea_m: f32| (start + old < sea_m) != (start + new < sea_m);
+    if by == 0.0 || sea.is_some_and(crosses) { old } else { new }
+}
+
+/// Moves `by` from the rest of a cell to its ground, where it may.
+fn put(bed: &mut Bed, rest: &mut [f32], i: usize, by: f32) {
+    let old = bed.change[i];
+    let new = moved(old, bed.start[i], by, bed.locked.then_some(bed.sea_m));
+    bed.change[i] = new;
+    rest[i] -= new - old;
 }
 
 /// Differences of what is left even out.
-fn spread(bed: &Bed, rest: &mut [f32], next: &mut [f32]) {
-    let width = bed.grid.width;
-    let held = &*rest;
+fn spread(bed: &Bed, rest: &[f32], next: &mut [f32]) {
+    let (width, height) = (bed.grid.width, bed.grid.height);
     for_each_row(next, width, |y, row| {
-        for (x, next) in row.iter_mut().enumerate() {
-            let here = held[y * width + x];
-            let mut flow = 0.0;
-            for j in around(bed, x, y) {
-                flow += held[j] - here;
-            }
-            *next = here + SPREAD * flow;
+        if y > 0 && y + 1 < height {
+            spread_within(rest, width, y, row);
+        }
+        for x in rim(width, height, y) {
+            let here = rest[y * width + x];
+            let flow = around(bed, x, y).iter().fold(0.0, |flow, &j| flow + (rest[j] - here));
+            row[x] = here + SPREAD * flow;
         }
     });
-    rest.copy_from_slice(next);
+}
+
+/// What is left within row `y`, which is not at the rim.
+#[multiversion(targets("x86_64+avx2"))]
+fn spread_within(rest: &[f32], width: usize, y: usize, next: &mut [f32]) {
+    let held = within(rest, width, y);
+    let many = held[4].len();
+    for (x, next) in next.iter_mut().skip(1).take(many).enumerate() {
+        let here = held[4][x];
+        let mut flow = 0.0;
+        for k in [0, 1, 2, 3, 5, 6, 7, 8] {
+            flow += held[k][x] - here;
+        }
+        *next = here + SPREAD * flow;
+    }
 }

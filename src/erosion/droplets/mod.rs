@@ -8,19 +8,26 @@
 //! that over a distance, so that cells of another size give the same valleys. No droplet digs below the next place of
 //! its path nor builds above the one before, and what finds no room at its end spreads until it does.
 //!
-//! Droplets run one after another within windows that are cut anew for each phase (`window.rs`). The other way, to
-//! trace many against frozen ground and add up what they did, needs batches so small that two hardly ever share a
-//! gully, and still digs where they do.
+//! Droplets run one after another within windows that are cut anew for each phase (`window.rs`), and those of several
+//! windows at a time in the lanes of a vector (`team.rs`, `step.rs`). The other way, to trace many against frozen ground
+//! and add up what they did, needs batches so small that two hardly ever share a gully, and still digs where they do.
 
+mod ground;
 mod kernel;
+mod lanes;
 mod params;
+mod places;
 mod process;
+mod step;
+mod team;
 #[cfg(test)]
 mod tests;
 mod walk;
 mod window;
 
 pub use params::DropletsParams;
+
+use std::sync::Mutex;
 
 use rayon::prelude::*;
 
@@ -34,6 +41,7 @@ use super::{
     leftover,
 };
 use kernel::Kernel;
+use team::Phase;
 use walk::{Droplet, Law};
 use window::Window;
 
@@ -114,42 +122,53 @@ impl Droplets {
         }
     }
 
-    /// Runs all droplets that wait, each until it ends or comes near to a cut; what left over the rim, m of a cell.
-    fn phase(&mut self, bed: &mut Bed, stream: &mut Stream) -> f64 {
-        let (grid, law, kernel, windows) = (self.grid, &self.law, &self.kernel, &mut self.windows);
+    /// Cuts the map anew and gives all droplets that wait to the windows; the first window of each row of the map, and
+    /// how many there are across.
+    fn share_out(&mut self, stream: &mut Stream) -> (Vec<usize>, usize) {
+        let (grid, windows) = (self.grid, &mut self.windows);
         let columns = window::cut(grid.width, grid.edges, stream.unit());
         let rows = window::cut(grid.height, grid.edges, stream.unit());
-        windows.resize_with((columns.len() * rows.len()).max(windows.len()), Window::default);
-        windows.iter_mut().for_each(|window| window.pieces = None);
-        for (k, window) in windows.iter_mut().take(columns.len() * rows.len()).enumerate() {
-            window.pieces = Some([columns[k % columns.len()], rows[k / columns.len()]]);
+        let (across, count) = (columns.len(), columns.len() * rows.len());
+        windows.resize_with(count.max(windows.len()), Window::default);
+        for (k, window) in windows.iter_mut().take(count).enumerate() {
+            window.shut([columns[k % across], rows[k / across]]);
         }
         let of_column = window::owners(&columns, grid.width);
-        let of_row = window::owners(&rows, grid.height);
+        let first: Vec<usize> = window::owners(&rows, grid.height).iter().map(|row| row * across).collect();
         for droplet in self.waiting.drain(..) {
-            let (x, y) = (of_column[droplet.at[0] as usize], of_row[droplet.at[1] as usize]);
-            windows[y * columns.len() + x].queue.push(droplet);
+            let [x, y] = droplet.at.map(|v| v as usize);
+            windows[first[y] + of_column[x]].queue.push(droplet);
         }
-        let (margin, frame, frozen) = (kernel.reach + 2, kernel.overhang(), &*bed);
-        windows.par_iter_mut().for_each(|window| {
-            if window.queue.is_empty() {
-                window.pieces = None;
-            } else {
-                window.open(frozen, frame);
-                walk::run(window, law, kernel, &grid, margin);
-            }
-        });
+        (first, across)
+    }
+
+    /// Runs all droplets that wait, each until it ends or comes near to a cut; what left over the rim, m of a cell.
+    fn phase(&mut self, bed: &mut Bed, stream: &mut Stream) -> f64 {
+        let (first, across) = self.share_out(stream);
+        let mut open: Vec<&mut Window> = self.windows.iter_mut().filter(|window| !window.queue.is_empty()).collect();
+        // Those with most droplets begin first.
+        open.sort_by_key(|window| window.queue.len());
+        let threads = rayon::current_num_threads();
+        let width = open.len().div_ceil(threads);
+        let (open, margin) = (Mutex::new(open), self.kernel.reach + 2);
+        let phase = Phase { bed, law: &self.law, kernel: &self.kernel, margin };
+        (0..threads).into_par_iter().for_each(|_| team::run(phase, &open, width));
+        let (grid, windows) = (self.grid, &self.windows);
         for_each_row(&mut bed.change, grid.width, |y, row| {
-            let first = of_row[y] * columns.len();
-            windows[first..first + columns.len()].iter().for_each(|window| window.close(&grid, y, row));
+            windows[first[y]..][..across].iter().for_each(|window| window.close(&grid, y, row));
         });
+        self.gather()
+    }
+
+    /// Takes from the windows what came of their droplets; what left over the rim, m of a cell.
+    fn gather(&mut self) -> f64 {
         let mut left = 0.0;
-        for window in windows {
+        for window in &mut self.windows {
             self.waiting.append(&mut window.later);
             left += std::mem::take(&mut window.left);
             self.steps += std::mem::take(&mut window.steps);
             for (cell, load) in window.rest.drain(..) {
-                self.rest.resize(grid.cells(), 0.0);
+                self.rest.resize(self.grid.cells(), 0.0);
                 self.rest[cell] += load as f32;
             }
         }

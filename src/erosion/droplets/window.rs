@@ -8,7 +8,7 @@
 use crate::grid::{Edges, Grid};
 
 use super::{
-    super::bed::Bed,
+    ground::Ground,
     walk::{Droplet, End},
 };
 
@@ -16,7 +16,7 @@ use super::{
 pub const SIDE: usize = 128;
 
 /// One piece of an axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Piece {
     /// First cell.
     pub from: usize,
@@ -58,56 +58,11 @@ pub fn owners(pieces: &[Piece], size: usize) -> Vec<usize> {
     owners
 }
 
-/// The ground in a window, with a frame around it in which nothing changes.
-#[derive(Default)]
-pub struct Ground {
-    /// Heights at the start, m.
-    pub start: Vec<f32>,
-    /// Changes, m.
-    pub change: Vec<f32>,
-    /// Shares of the rates; 0 in the frame.
-    pub rate: Vec<f32>,
-    /// Cells in a row with the frame.
-    pub stride: usize,
-    frame: usize,
-    /// The sea, m.
-    pub sea_m: f32,
-    /// Whether land stays land, and sea sea.
-    pub locked: bool,
-}
-
-impl Ground {
-    /// Index of a cell of the window.
-    #[inline(always)]
-    pub fn framed(&self, x: usize, y: usize) -> usize {
-        (y + self.frame) * self.stride + x + self.frame
-    }
-
-    /// Height of a cell, m.
-    #[inline(always)]
-    fn height(&self, i: usize) -> f32 {
-        self.start[i] + self.change[i]
-    }
-
-    /// Height and fall (m a cell, to the east and to the south) between the cells around a point.
-    #[inline(always)]
-    pub fn sample(&self, at: [f32; 2], most: [usize; 2]) -> (f32, [f32; 2]) {
-        let [x, y] = [(at[0] as usize).min(most[0]), (at[1] as usize).min(most[1])];
-        let [across, down] = [at[0] - x as f32, at[1] - y as f32];
-        let i = self.framed(x, y);
-        let [a, b] = [self.height(i), self.height(i + 1)];
-        let [c, d] = [self.height(i + self.stride), self.height(i + self.stride + 1)];
-        let fall = [(b - a) + ((d - c) - (b - a)) * down, (c - a) + ((d - b) - (c - a)) * across];
-        let [north, south] = [a + (b - a) * across, c + (d - c) * across];
-        (north + (south - north) * down, fall)
-    }
-}
-
 /// A piece of the map that one thread works on.
 #[derive(Default)]
 pub struct Window {
     /// Its columns and rows.
-    pub pieces: Option<[Piece; 2]>,
+    pub pieces: [Piece; 2],
     /// Its ground.
     pub ground: Ground,
     /// Droplets to run.
@@ -123,37 +78,17 @@ pub struct Window {
 }
 
 impl Window {
-    /// Copies the ground from the bed.
-    pub fn open(&mut self, bed: &Bed, frame: usize) {
-        let Some([columns, rows]) = self.pieces else { return };
-        let ground = &mut self.ground;
-        (ground.stride, ground.frame) = (columns.size + 2 * frame, frame);
-        (ground.sea_m, ground.locked) = (bed.sea_m, bed.locked);
-        let cells = ground.stride * (rows.size + 2 * frame);
-        for data in [&mut ground.start, &mut ground.change, &mut ground.rate] {
-            data.clear();
-            data.resize(cells, 0.0);
-        }
-        for y in 0..rows.size {
-            let row = (rows.from + y) % bed.grid.height * bed.grid.width;
-            let to = ground.framed(0, y);
-            for (at, from, size) in runs(columns, bed.grid.width) {
-                ground.start[to + at..][..size].copy_from_slice(&bed.start[row + from..][..size]);
-                ground.change[to + at..][..size].copy_from_slice(&bed.change[row + from..][..size]);
-                let rate = &mut ground.rate[to + at..][..size];
-                match bed.rate.get(row + from..row + from + size) {
-                    Some(of) => rate.copy_from_slice(of),
-                    None => rate.fill(1.0),
-                }
-            }
-        }
+    /// Makes it another piece of the map, of which nothing has been copied.
+    pub fn shut(&mut self, pieces: [Piece; 2]) {
+        self.pieces = pieces;
+        self.ground.loaded = 0..0;
     }
 
-    /// Writes row `y` of the map back, where it is one of the window's.
+    /// Writes row `y` of the map back, where it is one of the window's and a droplet came near.
     pub fn close(&self, grid: &Grid, y: usize, row: &mut [f32]) {
-        let Some([columns, rows]) = self.pieces else { return };
+        let [columns, rows] = self.pieces;
         let local = (y + grid.height - rows.from) % grid.height;
-        if local < rows.size {
+        if self.ground.loaded.contains(&local) {
             let of = self.ground.framed(0, local);
             for (at, from, size) in runs(columns, grid.width) {
                 row[from..][..size].copy_from_slice(&self.ground.change[of + at..][..size]);
@@ -162,13 +97,12 @@ impl Window {
     }
 
     /// Takes the end of a droplet.
-    #[inline(always)]
     pub fn book(&mut self, end: End, at: [f32; 2], load: f64, grid: &Grid) {
         match end {
             End::Left => self.left += load,
             End::Still if load == 0.0 => {}
             End::Still => {
-                let Some([columns, rows]) = self.pieces else { return };
+                let [columns, rows] = self.pieces;
                 let cell =
                     |v: f32, piece: Piece, size: usize| (piece.from + ((v + 0.5) as usize).min(piece.size - 1)) % size;
                 let i = grid.index(cell(at[0], columns, grid.width), cell(at[1], rows, grid.height));
@@ -179,7 +113,25 @@ impl Window {
 }
 
 /// The one or two runs of a piece on a row of the map: where in the piece, where on the map, how many cells.
-fn runs(piece: Piece, size: usize) -> impl Iterator<Item = (usize, usize, usize)> {
+pub fn runs(piece: Piece, size: usize) -> impl Iterator<Item = (usize, usize, usize)> {
     let first = piece.size.min(size - piece.from);
     [(0, piece.from, first), (first, 0, piece.size - first)].into_iter().filter(|run| run.2 > 0)
+}
+
+/// A place on the map as one in a window, from its first cell's centre.
+pub fn local(pieces: [Piece; 2], at: [f64; 2], grid: &Grid) -> [f32; 2] {
+    let of = |k: usize, size: usize| {
+        let local = at[k] - pieces[k].from as f64;
+        (if local < 0.0 { local + size as f64 } else { local }) as f32
+    };
+    [of(0, grid.width), of(1, grid.height)]
+}
+
+/// A place in a window as one on the map.
+pub fn global(pieces: [Piece; 2], at: [f32; 2], grid: &Grid) -> [f64; 2] {
+    let of = |k: usize, size: usize| {
+        let global = at[k] as f64 + pieces[k].from as f64;
+        if global >= size as f64 { global - size as f64 } else { global }
+    };
+    [of(0, grid.width), of(1, grid.height)]
 }
