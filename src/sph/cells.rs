@@ -24,10 +24,23 @@ impl Domain {
 
 /// A difference less the extent of a world that wraps, where that is shorter. Odd: the way back is exactly its negative.
 #[inline(always)]
-pub(super) fn shorter(d: f32, extent: f32) -> f32 {
+fn shorter(d: f32, extent: f32) -> f32 {
     let over = if d > 0.5 * extent { extent } else { 0.0 };
     let under = if d < -0.5 * extent { extent } else { 0.0 };
     d - over + under
+}
+
+/// `a − b`, the shorter way around where the world wraps.
+#[inline(always)]
+pub(super) fn away<const WRAP: bool>(a: f32, b: f32, extent: f32) -> f32 {
+    if WRAP { shorter(a - b, extent) } else { a - b }
+}
+
+/// Places in the table, each one once: a world that wraps may have a few cells more than the table, whose last and first cells
+/// then share entries.
+#[inline(always)]
+fn once(places: &[u32; 3]) -> impl Iterator<Item = u32> {
+    places.iter().enumerate().filter(|&(k, place)| !places[..k].contains(place)).map(|(_, &place)| place)
 }
 
 /// A table of cells no smaller than a radius, and where the particles of each begin in an order sorted by them.
@@ -133,24 +146,39 @@ impl Cells {
         (((y << self.bits[2]) | z) << self.bits[0]) | x
     }
 
-    /// Particles, in sorted order, of the cell and of the 26 around it, and of those that share an entry with them.
+    /// Particles, in sorted order, of the cell and of the 26 around it, and of those that share an entry with them: a range
+    /// for each row of cells from west to east, or more where the table begins again within the row.
     #[inline(always)]
     pub(super) fn around(&self, cell: [i32; 3], mut each: impl FnMut(std::ops::Range<usize>)) {
-        let next = |axis: usize, step: i32| {
-            let to = cell[axis].wrapping_add(step);
-            if self.around[axis] > 0 { to.rem_euclid(self.around[axis]) } else { to }
+        let [xs, ys, zs] = [0, 1, 2].map(|axis| self.beside(cell[axis], axis));
+        let first = xs[0];
+        let in_a_row = xs == [first, first + 1, first + 2];
+        let mut span = |from: u32, to: u32| {
+            let range = self.starts[from as usize] as usize..self.starts[to as usize + 1] as usize;
+            if !range.is_empty() {
+                each(range);
+            }
         };
-        for y in -1..=1 {
-            for z in -1..=1 {
-                for x in -1..=1 {
-                    let entry = self.entry([next(0, x), next(1, y), next(2, z)]) as usize;
-                    let range = self.starts[entry] as usize..self.starts[entry + 1] as usize;
-                    if !range.is_empty() {
-                        each(range);
-                    }
+        for y in once(&ys) {
+            for z in once(&zs) {
+                let row = ((y << self.bits[2]) | z) << self.bits[0];
+                if in_a_row {
+                    span(row | first, row | (first + 2));
+                } else {
+                    once(&xs).for_each(|x| span(row | x, row | x));
                 }
             }
         }
+    }
+
+    /// Where the table has the cell before a place along an axis, its own and the next.
+    #[inline(always)]
+    fn beside(&self, at: i32, axis: usize) -> [u32; 3] {
+        [-1, 0, 1].map(|step| {
+            let to = at.wrapping_add(step);
+            let to = if self.around[axis] > 0 { to.rem_euclid(self.around[axis]) } else { to };
+            to as u32 & ((1 << self.bits[axis]) - 1)
+        })
     }
 
     /// Whether a particle lies within `radius` of a place, no more than that of the cells; `at` is in sorted order.

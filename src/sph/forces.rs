@@ -4,14 +4,17 @@
 //! the rounding of sums. With `p` the pressure over the rest density and `n` the relative density
 //! `a_i = Σ V·[−(p_i/n_i² + p_j/n_j²)·∇W + 2ν/(n_i·n_j)·(x·∇W)/r²·v_ij] − κ·Σ V·W·x`.
 
-use std::marker::PhantomData;
+use std::{
+    hint::{black_box, select_unpredictable},
+    marker::PhantomData,
+};
 
 use rayon::prelude::*;
 
 use super::{
     Cloud, Domain, Kernel, LANES, Lists, RUN, Scale,
-    cells::shorter,
-    neighbours::Run,
+    cells::away,
+    neighbours::Rows,
     wide::{Reader, Work, widest},
 };
 
@@ -74,7 +77,7 @@ impl Forces {
             .into_par_iter()
             .enumerate()
             .for_each(|(r, (run, beyond, density, push, thin))| {
-                let (pairs, out) = (Pairs { place, domain, run, first: r * RUN }, [density, push, thin]);
+                let (pairs, out) = (Pairs { place, domain, rows: &run.rows, first: r * RUN }, [density, push, thin]);
                 match domain.wrap_m {
                     None => widest(Densities::<K, false> { pairs, liquid, beyond, out, kernel: PhantomData }),
                     Some(_) => widest(Densities::<K, true> { pairs, liquid, beyond, out, kernel: PhantomData }),
@@ -97,7 +100,7 @@ impl Forces {
             .into_par_iter()
             .enumerate()
             .for_each(|(r, (run, x, y, z))| {
-                let (pairs, out) = (Pairs { place, domain, run, first: r * RUN }, [x, y, z]);
+                let (pairs, out) = (Pairs { place, domain, rows: &run.rows, first: r * RUN }, [x, y, z]);
                 match (domain.wrap_m, liquid.cohesion_per_s2 > 0.0) {
                     (None, false) => {
                         widest(Accelerations::<K, false, false> { pairs, flow, liquid, out, kernel: PhantomData });
@@ -135,7 +138,7 @@ fn check(cloud: &Cloud, lists: &Lists) {
 struct Pairs<'a> {
     place: &'a [[f32; 4]],
     domain: Domain,
-    run: &'a Run,
+    rows: &'a Rows,
     first: usize,
 }
 
@@ -155,12 +158,6 @@ fn total(a: [f32; LANES]) -> f32 {
     (b[0] + b[2]) + (b[1] + b[3])
 }
 
-/// `a − b`, the shorter way around where the world wraps.
-#[inline(always)]
-fn away<const WRAP: bool>(a: f32, b: f32, extent: f32) -> f32 {
-    if WRAP { shorter(a - b, extent) } else { a - b }
-}
-
 struct Densities<'a, K, const WRAP: bool> {
     pairs: Pairs<'a>,
     liquid: &'a Liquid,
@@ -174,7 +171,7 @@ impl<K: Kernel, const WRAP: bool> Work for Densities<'_, K, WRAP> {
 
     #[inline(always)]
     fn run<R: Reader>(self) {
-        let Self { pairs: Pairs { place, domain, run, first }, liquid, beyond, out: [density, push, thin], .. } = self;
+        let Self { pairs: Pairs { place, domain, rows, first }, liquid, beyond, out: [density, push, thin], .. } = self;
         let [wx, wy] = domain.wrap_m.unwrap_or_default();
         let h = liquid.scale.h_m;
         let (per_h, weight) = (1.0 / h, liquid.scale.volume_m3 / (h * h * h));
@@ -183,7 +180,7 @@ impl<K: Kernel, const WRAP: bool> Work for Densities<'_, K, WRAP> {
         for k in 0..density.len() {
             let [x, y, z, _] = place[first + k];
             let mut sum = [0.0; LANES];
-            for js in run.of(k).as_chunks().0 {
+            for js in rows.of(k).as_chunks().0 {
                 let [xs, ys, zs, _] = eight::<R>(place, js);
                 for l in 0..LANES {
                     let (dx, dy) = (away::<WRAP>(x, xs[l], wx), away::<WRAP>(y, ys[l], wy));
@@ -191,10 +188,11 @@ impl<K: Kernel, const WRAP: bool> Work for Densities<'_, K, WRAP> {
                     let square = dx * dx + dy * dy + dz * dz;
                     let w = K::shape(square.sqrt() * per_h);
                     // Lists are filled up with the particle itself.
-                    sum[l] += if square > 0.0 { w } else { 0.0 };
+                    sum[l] += select_unpredictable(square > 0.0, w, 0.0);
                 }
             }
-            let n = weight * (total(sum) + own) + beyond[k];
+            // Behind the black box the sum stays eight wide: told how it is added up, the compiler halves the loop's lanes.
+            let n = weight * (total(black_box(sum)) + own) + beyond[k];
             density[k] = n;
             thin[k] = 1.0 / n;
             push[k] = sound2 * (n - 1.0).max(0.0) * thin[k] * thin[k];
@@ -215,7 +213,7 @@ impl<K: Kernel, const WRAP: bool, const COHESION: bool> Work for Accelerations<'
 
     #[inline(always)]
     fn run<R: Reader>(self) {
-        let Self { pairs: Pairs { place, domain, run, first }, flow, liquid, out: [out_x, out_y, out_z], .. } = self;
+        let Self { pairs: Pairs { place, domain, rows, first }, flow, liquid, out: [out_x, out_y, out_z], .. } = self;
         let [wx, wy] = domain.wrap_m.unwrap_or_default();
         let h = liquid.scale.h_m;
         let (per_h, weight) = (1.0 / h, liquid.scale.volume_m3 / (h * h * h * h * h));
@@ -225,7 +223,7 @@ impl<K: Kernel, const WRAP: bool, const COHESION: bool> Work for Accelerations<'
             let ([x, y, z, own], [vx, vy, vz, thin]) = (place[first + k], flow[first + k]);
             let drag = 2.0 * liquid.viscosity_m2_per_s * thin;
             let (mut ax, mut ay, mut az) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-            for js in run.of(k).as_chunks().0 {
+            for js in rows.of(k).as_chunks().0 {
                 let ([xs, ys, zs, push], [us, vs, ws, thins]) = (eight::<R>(place, js), eight::<R>(flow, js));
                 // The particle itself, with which lists are filled up, is 0 away and as fast: it adds nothing.
                 for l in 0..LANES {

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::{
     Cells, Cloud, LANES, RUN,
+    cells::away,
     wide::{Reader, Work, widest},
 };
 
@@ -17,32 +18,69 @@ pub struct Lists {
     made_for: [Vec<f32>; 3],
 }
 
-/// The lists of [`RUN`] particles.
+/// The lists of [`RUN`] particles, and what making them needs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Run {
-    /// Where each one's list begins, and the end of the last; multiples of [`LANES`].
-    starts: Vec<u32>,
-    /// Neighbours, filled up with the particle itself to whole lanes. All below the number of particles.
-    list: Vec<u32>,
+    pub(super) rows: Rows,
     near: Near,
 }
 
-/// What lies in and around a cell.
+/// Neighbours of [`RUN`] particles or fewer, one list behind the other.
 #[derive(Clone, Debug, Default)]
-struct Near {
-    cell: Option<[i32; 3]>,
-    at: [Vec<f32>; 3],
-    index: Vec<u32>,
-    square: Vec<f32>,
-    found: Vec<u32>,
+pub(super) struct Rows {
+    /// Where each one's list begins, and the end of the last; multiples of [`LANES`].
+    starts: Vec<u32>,
+    /// Neighbours, filled up with the particle itself to whole lanes, and room behind the last.
+    list: Vec<u32>,
 }
 
-impl Run {
+impl Rows {
+    /// Forgets all lists.
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        self.starts.clear();
+        self.starts.push(0);
+    }
+
     /// The list of the particle `k` of the run.
     #[inline(always)]
     pub(super) fn of(&self, k: usize) -> &[u32] {
         &self.list[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
+
+    /// Room for a list of up to `most`, and for eight more.
+    #[inline(always)]
+    pub(super) fn room(&mut self, most: usize) -> &mut [u32] {
+        let (from, to) = (self.end(), self.end() + most + LANES);
+        if self.list.len() < to {
+            self.list.resize(2 * to, 0);
+        }
+        &mut self.list[from..to]
+    }
+
+    /// Keeps the first `found` of what was put into the room as the next particle's list, and fills it up with `own`.
+    #[inline(always)]
+    pub(super) fn keep(&mut self, found: usize, own: u32) {
+        let (from, to) = (self.end() + found, self.end() + found.next_multiple_of(LANES));
+        self.list[from..to].fill(own);
+        self.starts.push(to as u32);
+    }
+
+    /// Where the last list ends.
+    #[inline(always)]
+    fn end(&self) -> usize {
+        self.starts.last().map_or(0, |&end| end as usize)
+    }
+}
+
+/// What lies in and around a cell, in whole lanes: filled up with places that are endlessly far.
+#[derive(Clone, Debug, Default)]
+struct Near {
+    cell: Option<[i32; 3]>,
+    x: Vec<f32>,
+    y: Vec<f32>,
+    z: Vec<f32>,
+    index: Vec<u32>,
 }
 
 impl Lists {
@@ -76,12 +114,12 @@ impl Lists {
 
     /// The neighbours of a particle, nearer than the radius when the lists were made.
     pub fn of(&self, i: usize) -> impl Iterator<Item = usize> + '_ {
-        self.runs[i / RUN].of(i % RUN).iter().map(|&j| j as usize).filter(move |&j| j != i)
+        self.runs[i / RUN].rows.of(i % RUN).iter().map(|&j| j as usize).filter(move |&j| j != i)
     }
 
     /// Entries in all lists.
     pub fn entries(&self) -> usize {
-        self.runs.iter().map(|run| run.list.len()).sum()
+        self.runs.iter().map(|run| run.rows.end()).sum()
     }
 }
 
@@ -100,10 +138,8 @@ impl Work for Make<'_> {
     #[inline(always)]
     fn run<R: Reader>(self) {
         let Self { cells, cloud, radius_m, first, last, run } = self;
-        let Run { starts, list, near } = run;
-        starts.clear();
-        starts.push(0);
-        list.clear();
+        let Run { rows, near } = run;
+        rows.clear();
         near.cell = None;
         for i in first..last {
             let here = [cloud.x[i], cloud.y[i], cloud.z[i]];
@@ -111,16 +147,12 @@ impl Work for Make<'_> {
             if near.cell != Some(cell) {
                 near.fill(cells, cloud, cell);
             }
-            near.measure(cells, here);
-            let mut found = 0;
-            // Written always, kept where it counts: no branch to guess.
-            for (&j, &square) in near.index.iter().zip(&near.square) {
-                near.found[found] = j;
-                found += usize::from(square < radius_m * radius_m && j != i as u32);
-            }
-            list.extend_from_slice(&near.found[..found]);
-            list.extend(std::iter::repeat_n(i as u32, found.next_multiple_of(LANES) - found));
-            starts.push(list.len() as u32);
+            let (to, own) = (rows.room(near.index.len()), i as u32);
+            let found = match cells.domain.wrap_m {
+                None => near.find::<R, false>([0.0; 2], here, radius_m, own, to),
+                Some(wrap) => near.find::<R, true>(wrap, here, radius_m, own, to),
+            };
+            rows.keep(found, own);
         }
     }
 }
@@ -130,37 +162,50 @@ impl Near {
     #[inline(always)]
     fn fill(&mut self, cells: &Cells, cloud: &Cloud, cell: [i32; 3]) {
         self.cell = Some(cell);
-        let [x, y, z] = &mut self.at;
+        let Self { x, y, z, index, .. } = self;
         for values in [&mut *x, &mut *y, &mut *z] {
             values.clear();
         }
-        self.index.clear();
+        index.clear();
         cells.around(cell, |range| {
             x.extend_from_slice(&cloud.x[range.clone()]);
             y.extend_from_slice(&cloud.y[range.clone()]);
             z.extend_from_slice(&cloud.z[range.clone()]);
-            self.index.extend(range.map(|j| j as u32));
+            index.extend(range.start as u32..range.end as u32);
         });
-        self.square.resize(self.index.len(), 0.0);
-        self.found.resize(self.index.len() + 1, 0);
+        let whole = index.len().next_multiple_of(LANES);
+        for values in [x, y, z] {
+            values.resize(whole, f32::INFINITY);
+        }
+        index.resize(whole, 0);
     }
 
-    /// Squares of the distances to a place.
+    /// Puts those nearer than `radius` to the particle `but`, which is `here`, at the beginning of `to`, which has room for all
+    /// and eight more; says how many they are.
     #[inline(always)]
-    fn measure(&mut self, cells: &Cells, here: [f32; 3]) {
-        let domain = cells.domain;
-        let n = self.index.len();
-        let (x, y, z, square) = (&self.at[0][..n], &self.at[1][..n], &self.at[2][..n], &mut self.square[..n]);
-        if domain.wrap_m.is_some() {
-            for k in 0..n {
-                let [dx, dy, dz] = domain.nearest([here[0] - x[k], here[1] - y[k], here[2] - z[k]]);
-                square[k] = dx * dx + dy * dy + dz * dz;
+    fn find<R: Reader, const WRAP: bool>(
+        &self,
+        [wx, wy]: [f32; 2],
+        [x, y, z]: [f32; 3],
+        radius: f32,
+        but: u32,
+        to: &mut [u32],
+    ) -> usize {
+        let (xs, ys, zs) = (self.x.as_chunks::<LANES>().0, self.y.as_chunks().0, self.z.as_chunks::<LANES>().0);
+        let mut found = 0;
+        for (((xs, ys), zs), index) in xs.iter().zip(ys).zip(zs).zip(self.index.as_chunks().0) {
+            let ys: &[f32; LANES] = ys;
+            let mut squares = [0.0; LANES];
+            for l in 0..LANES {
+                let (dx, dy) = (away::<WRAP>(x, xs[l], wx), away::<WRAP>(y, ys[l], wy));
+                let dz = z - zs[l];
+                squares[l] = dx * dx + dy * dy + dz * dz;
             }
-        } else {
-            for k in 0..n {
-                let (dx, dy, dz) = (here[0] - x[k], here[1] - y[k], here[2] - z[k]);
-                square[k] = dx * dx + dy * dy + dz * dz;
+            if let Some(to) = to[found..].first_chunk_mut() {
+                // SAFETY: whoever runs this with a reader has looked whether the processor has what it needs.
+                found += unsafe { R::pick(index, &squares, radius * radius, but, to) };
             }
         }
+        found
     }
 }

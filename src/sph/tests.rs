@@ -88,7 +88,8 @@ fn a_lattice_has_the_rest_density() {
 
 #[test]
 fn lists_hold_what_the_naive_loop_finds() {
-    for (side, wrap) in [(9, None), (12, Some([12.0, 12.0])), (1, None)] {
+    // The third world has five cells around and a table of four.
+    for (side, wrap) in [(9, None), (12, Some([12.0, 12.0])), (9, Some([13.6, 13.6])), (1, None)] {
         let (domain, radius) = (Domain { wrap_m: wrap }, 2.7f32);
         let (cloud, lists) = listed(block(side, 0.7), radius, domain);
         for i in 0..cloud.len() {

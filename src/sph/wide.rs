@@ -21,6 +21,14 @@ pub trait Reader {
     ///
     /// Every index is below the length of `records`.
     unsafe fn read(records: &[[f32; 4]], at: &[u32; LANES]) -> [[f32; LANES]; 4];
+
+    /// Puts those of `values` whose `size` is below `limit`, and that are not `but`, at the beginning of `to`, in order, and
+    /// says how many they are; what comes behind them in `to` is of no use.
+    ///
+    /// # Safety
+    ///
+    /// The processor has what the reader is made for.
+    unsafe fn pick(values: &[u32; LANES], sizes: &[f32; LANES], limit: f32, but: u32, to: &mut [u32; LANES]) -> usize;
 }
 
 /// One by one.
@@ -39,7 +47,37 @@ impl Reader for Plain {
         }
         lanes
     }
+
+    #[inline(always)]
+    unsafe fn pick(values: &[u32; LANES], sizes: &[f32; LANES], limit: f32, but: u32, to: &mut [u32; LANES]) -> usize {
+        let mut found = 0;
+        // Written always, kept where it counts: no branch to guess.
+        for l in 0..LANES {
+            to[found % LANES] = values[l];
+            found += usize::from((sizes[l] < limit) & (values[l] != but));
+        }
+        found
+    }
 }
+
+/// For every set of lanes, as bits, the lanes in it, in order.
+#[cfg(target_arch = "x86_64")]
+static PICKED: [[u8; LANES]; 1 << LANES] = {
+    let mut picked = [[0; LANES]; 1 << LANES];
+    let mut set = 0;
+    while set < picked.len() {
+        let (mut lane, mut found) = (0, 0);
+        while lane < LANES {
+            if set >> lane & 1 == 1 {
+                picked[set][found] = lane as u8;
+                found += 1;
+            }
+            lane += 1;
+        }
+        set += 1;
+    }
+    picked
+};
 
 /// Eight loads and eight shuffles: twice as fast here as the processor's own instruction for scattered values.
 #[cfg(target_arch = "x86_64")]
@@ -75,6 +113,25 @@ impl Reader for Turned {
         }
         lanes
     }
+
+    #[inline(always)]
+    unsafe fn pick(values: &[u32; LANES], sizes: &[f32; LANES], limit: f32, but: u32, to: &mut [u32; LANES]) -> usize {
+        use std::arch::x86_64::{
+            _CMP_LT_OQ, _mm_loadl_epi64, _mm256_andnot_ps, _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32,
+            _mm256_cvtepu8_epi32, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_movemask_ps, _mm256_permutevar8x32_epi32,
+            _mm256_set1_epi32, _mm256_set1_ps, _mm256_storeu_si256,
+        };
+        // SAFETY: every load and store is of eight lanes that are there; only functions compiled for AVX2 use this reader.
+        unsafe {
+            let (from, sizes) = (_mm256_loadu_si256(values.as_ptr().cast()), _mm256_loadu_ps(sizes.as_ptr()));
+            let small = _mm256_cmp_ps::<_CMP_LT_OQ>(sizes, _mm256_set1_ps(limit));
+            let same = _mm256_castsi256_ps(_mm256_cmpeq_epi32(from, _mm256_set1_epi32(but as i32)));
+            let set = _mm256_movemask_ps(_mm256_andnot_ps(same, small)) as usize;
+            let lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(PICKED[set & 0xFF].as_ptr().cast()));
+            _mm256_storeu_si256(to.as_mut_ptr().cast(), _mm256_permutevar8x32_epi32(from, lanes));
+            set.count_ones() as usize
+        }
+    }
 }
 
 /// Runs `work` with the widest registers there are.
@@ -86,11 +143,12 @@ pub fn widest<W: Work>(work: W) -> W::Out {
     }
     #[cfg(target_arch = "x86_64")]
     {
-        if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl") {
+        let half = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt");
+        if half && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl") {
             // SAFETY: the processor has what the function is compiled for.
             return unsafe { in_avx512(work) };
         }
-        if is_x86_feature_detected!("avx2") {
+        if half {
             // SAFETY: as above.
             return unsafe { in_avx2(work) };
         }
@@ -99,13 +157,13 @@ pub fn widest<W: Work>(work: W) -> W::Out {
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx2")]
+#[target_feature(enable = "avx512f,avx512vl,avx2,popcnt")]
 fn in_avx512<W: Work>(work: W) -> W::Out {
     work.run::<Turned>()
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,popcnt")]
 fn in_avx2<W: Work>(work: W) -> W::Out {
     work.run::<Turned>()
 }

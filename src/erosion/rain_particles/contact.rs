@@ -1,5 +1,7 @@
 //! The ground as water meets it: a mesh of triangles on the cell centres, and what happens to a particle that reaches it.
 
+use std::hint::select_unpredictable;
+
 use crate::grid::{Edges, Grid, for_each_row};
 
 use super::super::bed::Bed;
@@ -159,20 +161,17 @@ impl Ground {
         let ([w, e], [n, s]) = (self.pair(cx, self.grid.width), self.pair(cy, self.grid.height));
         let (north, south) = (n * self.grid.width, s * self.grid.width);
         let [a, b, c, d] = [north + w, north + e, south + w, south + e].map(|i| self.spots[i]);
-        // The square is split from its north-east to its south-west corner.
-        let (height, face) = if u + v < 1.0 {
-            let (du, dv) = (b.height - a.height, c.height - a.height);
-            (a.height + u * du + v * dv, [du, dv])
-        } else {
-            let (du, dv) = (d.height - c.height, d.height - b.height);
-            (d.height - (1.0 - u) * du - (1.0 - v) * dv, [du, dv])
-        };
+        // The square is split from its north-east to its south-west corner. Which half it is cannot be guessed: no branch.
+        let half = |north_west: f32, south_east: f32| select_unpredictable(u + v < 1.0, north_west, south_east);
+        let du = half(b.height, d.height) - half(a.height, c.height);
+        let dv = half(c.height, d.height) - half(a.height, b.height);
+        let height = half(a.height, d.height) + half(u, u - 1.0) * du + half(v, v - 1.0) * dv;
         let smooth = [0, 1].map(|axis| {
             let north = a.slope[axis] + u * (b.slope[axis] - a.slope[axis]);
             let south = c.slope[axis] + u * (d.slope[axis] - c.slope[axis]);
             north + v * (south - north)
         });
-        Foot { height, face: normal(face.map(|rise| rise * self.per_cell)), normal: normal(smooth) }
+        Foot { height, face: normal([du, dv].map(|rise| rise * self.per_cell)), normal: normal(smooth) }
     }
 }
 
@@ -205,21 +204,26 @@ impl Touch {
         let mut foot = ground.foot(to[0], to[1]);
         let mut gap = foot.gap(to[2]);
         if gap < self.radius {
-            // Out along the triangle; a second time where that led under the next one.
+            // Out along the triangle, by as much as it came nearer, and slowly what is missing then: where the ground bends,
+            // a triangle that it was never over may be nearer than a radius at once. Again where that led under the next one.
+            let nearer: f32 = (0..3).map(|axis| (from[axis] - to[axis]) * foot.face[axis]).sum();
+            let mut most = nearer.max(0.0) + self.calm * dt;
             for _ in 0..3 {
+                let out = (self.radius - gap).min(most);
+                most -= out;
                 for (to, face) in to.iter_mut().zip(foot.face) {
-                    *to += (self.radius - gap) * face;
+                    *to += out * face;
                 }
                 foot = ground.foot(to[0], to[1]);
                 gap = foot.gap(to[2]);
-                if gap >= 0.9 * self.radius {
+                if gap >= 0.9 * self.radius || most <= 0.0 {
                     break;
                 }
             }
-            if gap < 0.5 * self.radius {
+            if gap < 0.0 {
                 // A notch or a wall: back to where it was, at rest, and out of ground that may have risen meanwhile.
                 foot = ground.foot(from[0], from[1]);
-                to = [from[0], from[1], from[2].max(foot.height + self.radius)];
+                to = [from[0], from[1], from[2].max(foot.height)];
                 v = [0.0; 3];
             }
             let n = foot.normal;

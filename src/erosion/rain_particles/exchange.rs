@@ -30,9 +30,22 @@ pub(super) struct Exchange {
     lay: Vec<f64>,
     touched: Vec<u32>,
     wants: Vec<f64>,
+    asks: Vec<Ask>,
+    got: Vec<f64>,
+}
+
+/// A particle that wants something from the bed, or to give it something.
+#[derive(Clone, Debug)]
+struct Ask {
+    particle: u32,
+    /// What it wants, m³.
+    want: f64,
+    /// Where.
+    nine: Nine,
 }
 
 /// Nine cells around a place, row-major, and their weights; 0 beyond the rim.
+#[derive(Clone, Debug)]
 struct Nine {
     cells: [usize; 9],
     weights: [f64; 9],
@@ -81,6 +94,8 @@ impl Exchange {
             lay: vec![0.0; grid.cells()],
             touched: Vec::new(),
             wants: Vec::new(),
+            asks: Vec::new(),
+            got: Vec::new(),
         }
     }
 
@@ -118,13 +133,19 @@ impl Exchange {
             share * (capacity - seen.load_m3[i])
         };
         (0..seen.cloud.len()).into_par_iter().with_min_len(1024).map(want).collect_into_vec(&mut self.wants);
-        for (i, &want) in self.wants.iter().enumerate().filter(|(_, want)| **want != 0.0) {
-            for (cell, weight) in Nine::at(&grid, water.cloud.x[i], water.cloud.y[i]).each() {
+        let asked = |&(particle, &want): &(usize, &f64)| {
+            let nine = Nine::at(&grid, seen.cloud.x[particle], seen.cloud.y[particle]);
+            Ask { particle: particle as u32, want, nine }
+        };
+        let asking: Vec<_> = self.wants.iter().enumerate().filter(|(_, want)| **want != 0.0).collect();
+        asking.par_iter().with_min_len(256).map(asked).collect_into_vec(&mut self.asks);
+        for Ask { want, nine, .. } in &self.asks {
+            for (cell, weight) in nine.each() {
                 if self.dig[cell] == 0.0 && self.lay[cell] == 0.0 {
                     self.touched.push(cell as u32);
                 }
                 let asked = weight * want * bed.rate(cell) as f64;
-                *(if want > 0.0 { &mut self.dig[cell] } else { &mut self.lay[cell] }) += asked.abs();
+                *(if *want > 0.0 { &mut self.dig[cell] } else { &mut self.lay[cell] }) += asked.abs();
             }
         }
         // Cells that only gave nothing may have been noted twice.
@@ -142,16 +163,14 @@ impl Exchange {
             net.push((self.lay[cell] * lay - self.dig[cell] * dig) / area);
             (self.dig[cell], self.lay[cell]) = (dig, lay);
         }
-        for i in 0..water.cloud.len() {
-            let want = self.wants[i];
-            if want != 0.0 {
-                let granted = if want > 0.0 { &self.dig } else { &self.lay };
-                let got: f64 = Nine::at(&grid, water.cloud.x[i], water.cloud.y[i])
-                    .each()
-                    .map(|(cell, weight)| weight * want * bed.rate(cell) as f64 * granted[cell])
-                    .sum();
-                water.load_m3[i] += got;
-            }
+        let (dig, lay, rates) = (&self.dig, &self.lay, &*bed);
+        let got = |Ask { want, nine, .. }: &Ask| -> f64 {
+            let granted = if *want > 0.0 { dig } else { lay };
+            nine.each().map(|(cell, weight)| weight * want * rates.rate(cell) as f64 * granted[cell]).sum()
+        };
+        self.asks.par_iter().with_min_len(256).map(got).collect_into_vec(&mut self.got);
+        for (ask, got) in self.asks.iter().zip(&self.got) {
+            water.load_m3[ask.particle as usize] += got;
         }
         for (&cell, net) in touched.iter().zip(net) {
             self.put(bed, cell as usize, net);
