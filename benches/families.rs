@@ -102,7 +102,8 @@ fn drops(c: &mut Criterion) {
     let fresh = |bed: &Bed| Droplets::new(&params, &bed.grid, Key::new(1));
     // Ways grow longer from round to round, so that the same round is taken again and again: the second.
     let mut bed = hills(1024);
-    round(&mut bed, &mut fresh(&bed), 0);
+    let mut first = fresh(&bed);
+    round(&mut bed, &mut first, 0);
     let steps = {
         let (mut bed, mut drops) = (bed.clone(), fresh(&bed));
         round(&mut bed, &mut drops, 1);
