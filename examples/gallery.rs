@@ -27,11 +27,11 @@ use upthrust::{
 
 /// Cells a side of the presets' worlds, and pixels of their maps.
 const SIDE: usize = 512;
-/// Pixels of the panels on a sheet of eighteen.
-const SMALL_PANEL: usize = 208;
 /// Cells a side of the worlds on sheets, and pixels of their panels.
 const PANEL: usize = 320;
 const PANELS: usize = 6;
+/// Cells below this width are chosen for particles, m.
+const PARTICLES_M: f64 = 2.0;
 const QUALITY: u8 = 85;
 /// The repository stays small: a larger picture is encoded more coarsely.
 const MOST_BYTES: usize = 190_000;
@@ -63,7 +63,9 @@ fn main() -> Outcome<()> {
         page.draw("three-scales", &three_scales()?)?;
     }
     if wants("five-ways") {
-        page.draw("five-ways", &five_ways()?)?;
+        let [eroded, flow] = five_ways()?;
+        page.draw("five-ways", &eroded)?;
+        page.draw("five-ways-flow", &flow)?;
     }
     if wants("canyon-film") {
         page.film("canyon", "canyon-film")?;
@@ -102,7 +104,17 @@ impl Page {
         let folder = std::env::temp_dir().join(format!("upthrust-{name}-{}", std::process::id()));
         let film = folder.join("film.mp4");
         job::grow(&request(preset, &folder)?, &AtomicBool::new(false), &mut |_| ())?;
-        let small = ["-vf", "fps=10", "-loop", "0", "-c:v", "libwebp_anim", "-quality", "38", "-y"];
+        let small = [
+            "-vf",
+            "fps=5,scale=560:-2:flags=lanczos",
+            "-loop",
+            "0",
+            "-compression_level",
+            "6",
+            "-quality",
+            "60",
+            "-y",
+        ];
         let mut ffmpeg = Command::new("ffmpeg");
         ffmpeg.args(["-v", "error", "-i"]).arg(&film).args(small).arg(self.folder.join(name).with_extension("webp"));
         let done = ffmpeg.status()?;
@@ -156,8 +168,9 @@ impl Page {
             (
                 "five-ways",
                 "One start, eroded five ways",
-                "Fractal hills a kilometre across, and what each family of erosion makes of them; in the second row what it wore off, in the third how a year's rain would run. [Erosion](../erosion.md) says \
-                 which is for what.",
+                "Fractal hills a kilometre across, and what each family of erosion makes of them; in the second row \
+                 what it wore off. [Erosion](../erosion.md) says which is for what.\n\n![How a year's rain runs over \
+                 each](five-ways-flow.jpg)",
             ),
         ];
         for (name, title, caption) in sheets {
@@ -186,7 +199,7 @@ fn request(preset: &Preset, folder: &Path) -> Outcome<job::Request> {
         checkpoint_every: timeline::EVERY,
         until: None,
         film: Some(FilmRequest {
-            size: Some([640, 360]),
+            size: Some([1120, 630]),
             view: "relief".to_owned(),
             clock: true,
             ..FilmRequest::default()
@@ -211,9 +224,9 @@ fn collision() -> Outcome<Plan> {
 }
 
 fn preset_picture(preset: &Preset) -> Outcome<RgbImage> {
-    // Particles suit the cells that they were chosen for.
     let own = Plan::new(&preset.source(), &Overrides::default())?.world.grid();
-    let plan = plan(preset, SIDE.min(own.width))?;
+    // Particles suit the cells that they were chosen for.
+    let plan = plan(preset, if own.cell_m < PARTICLES_M { own.width } else { SIDE })?;
     let world = grow(&plan, &mut [])?;
     let options = Options { title: Some(plan.title.clone()), max_px: SIDE, ..Options::default() };
     Ok(relief::map(&world, &View::Relief, &options)?)
@@ -296,9 +309,9 @@ fn three_scales() -> Outcome<RgbImage> {
     Ok(relief::contact_sheet(&panels, panels.len()))
 }
 
-/// The same hills as they were and after each family; below what was worn off, a metre on the mean of the map, and how
-/// rain would run.
-fn five_ways() -> Outcome<RgbImage> {
+/// The same hills as they were and after each family, and below what was worn off, a metre on the mean of the map; on
+/// another sheet how rain would run.
+fn five_ways() -> Outcome<[RgbImage; 2]> {
     const WAYS: [(&str, &str); 6] = [
         ("the start", ""),
         ("thermal", "talus_angle_deg = 25.0\nrock_angle_deg = 30.0\n"),
@@ -307,8 +320,8 @@ fn five_ways() -> Outcome<RgbImage> {
         ("rain_particles", "duration_min = 2.0\nmorphological_factor = 72.0\n"),
         ("droplets", "duration_yr = 5500.0\n"),
     ];
-    let options = Options::bare(SMALL_PANEL);
-    let mut rows = [const { Vec::new() }; 3];
+    let options = Options::bare(PANEL);
+    let (mut above, mut below, mut flow) = (Vec::new(), Vec::new(), Vec::new());
     for (name, params) in WAYS {
         let eroded = !name.contains(' ');
         let stage = if eroded { format!("[[stage]]\nkind = '{name}'\n{params}") } else { String::new() };
@@ -323,11 +336,12 @@ fn five_ways() -> Outcome<RgbImage> {
             }
             None => (Layer::Slope, "slope".to_owned()),
         };
-        rows[0].push((name.to_owned(), relief::map(&world, &View::Relief, &options)?));
-        rows[1].push((label, relief::map(&world, &View::Layer(seen), &options)?));
-        rows[2].push(("flow".to_owned(), relief::map(&flowing, &View::Layer(Layer::Discharge), &options)?));
+        above.push((name.to_owned(), relief::map(&world, &View::Relief, &options)?));
+        below.push((label, relief::map(&world, &View::Layer(seen), &options)?));
+        flow.push((format!("{name}: discharge"), relief::map(&flowing, &View::Layer(Layer::Discharge), &options)?));
     }
-    Ok(relief::contact_sheet(&rows.concat(), WAYS.len()))
+    above.append(&mut below);
+    Ok([above, flow].map(|panels| relief::contact_sheet(&panels, WAYS.len())))
 }
 
 /// Hills a kilometre across, and what a stage makes of them.
