@@ -54,8 +54,8 @@ impl Column {
         }
     }
 
-    /// Writes the ground back. `raised_m` is what it would be by uplift alone, `height_m` what it is; what was lifted
-    /// joins the bedrock. Books what came in by uplift and left over the rim, both in m³.
+    /// Writes the ground back; what was lifted joins the bedrock. Books what came in by uplift and left over the rim, both
+    /// in m³.
     pub(super) fn write(&mut self, world: &mut World, change: &Change, stage: &str) {
         let stock = world.rock_m3();
         let mut take = |layer: Layer| {
@@ -101,14 +101,9 @@ impl Column {
 
     fn spread(&mut self, layers: &mut Layers, change: &Change) {
         let width = self.rest.grid.width.max(1);
-        let none = vec![0.0f32; if layers.lava.is_some() { 0 } else { width }];
-        let (mut own, mut empty) = (layers.lava.as_mut(), Vec::new());
-        let lava: Vec<&mut [f32]> = match &mut own {
-            Some(lava) => lava.data.chunks_mut(width).collect(),
-            None => {
-                empty.resize_with(self.rest.grid.height, || none.clone());
-                empty.iter_mut().map(Vec::as_mut_slice).collect()
-            }
+        let lava: Vec<Option<&mut [f32]>> = match &mut layers.lava {
+            Some(lava) => lava.data.chunks_mut(width).map(Some).collect(),
+            None => (0..self.rest.grid.height).map(|_| None).collect(),
         };
         (layers.bedrock.data.par_chunks_mut(width), layers.sediment.data.par_chunks_mut(width), lava)
             .into_par_iter()
@@ -118,21 +113,26 @@ impl Column {
                 self.rest.data.par_chunks_mut(width),
             ))
             .enumerate()
-            .for_each(|(y, ((bedrock, sediment, lava), (wear, deposit, rest)))| {
-                let (height, raised) = (&change.height_m[y * width..], &change.raised_m[y * width..]);
+            .for_each(|(y, ((bedrock, sediment, mut lava), (wear, deposit, rest)))| {
                 for x in 0..bedrock.len() {
-                    let gained = height[x] - raised[x];
+                    let molten = lava.as_ref().map_or(0.0, |lava| lava[x]);
+                    let (raised, height) = change.ground.at(y * width + x, [rest[x], bedrock[x], molten, sediment[x]]);
+                    let gained = height - raised;
+                    let mut frozen = molten;
                     if gained > 0.0 {
                         sediment[x] = (sediment[x] as f64 + gained) as f32;
                         deposit[x] = (deposit[x] as f64 + gained) as f32;
                     } else if gained < 0.0 {
                         let loose = (sediment[x] as f64).min(-gained).max(0.0);
                         sediment[x] = (sediment[x] as f64 - loose) as f32;
-                        let frozen = (lava[x] as f64).min(-gained - loose).max(0.0);
-                        lava[x] = (lava[x] as f64 - frozen) as f32;
+                        let taken = (molten as f64).min(-gained - loose).max(0.0);
+                        frozen = (molten as f64 - taken) as f32;
                         wear[x] = (wear[x] as f64 - gained) as f32;
                     }
-                    let solid = height[x] - (sediment[x] as f64 + lava[x] as f64);
+                    if let Some(lava) = &mut lava {
+                        lava[x] = frozen;
+                    }
+                    let solid = height - (sediment[x] as f64 + frozen as f64);
                     bedrock[x] = solid as f32;
                     rest[x] = (solid - bedrock[x] as f64) as f32;
                 }
@@ -142,12 +142,33 @@ impl Column {
 
 /// What a step did.
 pub(super) struct Change<'a> {
-    /// Ground after uplift alone, m.
-    pub(super) raised_m: &'a [f64],
-    /// Ground after all, m.
-    pub(super) height_m: &'a [f64],
+    /// The ground.
+    pub(super) ground: Ground<'a>,
     /// Came in by uplift, m³.
     pub(super) lifted_m3: f64,
     /// Left the map, m³.
     pub(super) left_m3: f64,
+}
+
+/// What a step did to the ground.
+pub(super) enum Ground<'a> {
+    /// Its heights by uplift alone and after all, m.
+    Heights([&'a [f64]; 2]),
+    /// What all steps so far have changed it by, before this one and after it, m: no map of heights is needed.
+    Changes([&'a [f32]; 2]),
+}
+
+impl Ground<'_> {
+    /// Heights of a cell by uplift alone and after all, m; `column` is what it was made of, in the order of
+    /// [`Column::read`].
+    #[inline]
+    fn at(&self, i: usize, column: [f32; 4]) -> (f64, f64) {
+        match self {
+            Self::Heights([raised, height]) => (raised[i], height[i]),
+            Self::Changes([before, after]) => {
+                let raised = column.into_iter().map(f64::from).reduce(|sum, part| sum + part).unwrap_or(0.0);
+                (raised, raised + (f64::from(after[i]) - f64::from(before[i])))
+            }
+        }
+    }
 }

@@ -17,7 +17,7 @@ use crate::{
     world::{Layer, World},
 };
 
-use super::column::{Change, Column};
+use super::column::{Change, Column, Ground};
 
 /// Most that nearness to the critical slope can speed creep up.
 const FASTEST: f64 = 100.0;
@@ -115,7 +115,7 @@ impl Process for Stage {
         let mut height_m = before.clone();
         // Cancelled half way, the world has not been written to.
         creep.run(&mut height_m, self.params.diffusivity_m2_per_yr * years, || context.check())?;
-        let change = Change { raised_m: &before, height_m: &height_m, lifted_m3: 0.0, left_m3: 0.0 };
+        let change = Change { ground: Ground::Heights([&before, &height_m]), lifted_m3: 0.0, left_m3: 0.0 };
         run.column.write(world, &change, context.stage);
         self.done += 1;
         Ok(Step { done: self.done as f64 / self.steps as f64, elapsed_yr: years })

@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     bed::{Bed, Family, Moved, Part, Saved},
-    column::{Change, Column},
+    column::{Change, Column, Ground},
 };
 use crate::{
-    grid::{Field, Grid, sum_f64},
+    grid::{Field, Grid, for_each_row, sum_f64, sum_rows},
     noise::Key,
     process::{Context, Placement, Process, ProcessError, State, Step},
     world::{Layer, Matter, World},
@@ -167,21 +167,12 @@ impl<T: FamilyParams> Stage<T> {
         moved: &Moved,
         stage: &str,
     ) {
-        let mut raised_m = Vec::new();
-        run.column.read(world, &mut raised_m);
-        let gained = run.bed.change.iter().zip(before).map(|(now, before)| f64::from(*now) - f64::from(*before));
-        let mut laid_m = 0.0;
-        let height_m: Vec<f64> = (raised_m.iter().zip(gained))
-            .map(|(z, gained)| {
-                laid_m += gained.max(0.0);
-                z + gained
-            })
-            .collect();
         // What is on its way has left the ground.
         let left_m3 = moved.rock_left_m3 + run.solver.carried_m3() - carried_m3;
-        run.column.write(world, &Change { raised_m: &raised_m, height_m: &height_m, lifted_m3: 0.0, left_m3 }, stage);
+        let ground = Ground::Changes([before, &run.bed.change]);
+        run.column.write(world, &Change { ground, lifted_m3: 0.0, left_m3 }, stage);
         // What came from one place and lies in another was moved: it left, and came in again.
-        let laid_m3 = laid_m * world.grid.cell_area_m2();
+        let laid_m3 = laid_m(&world.grid, before, &run.bed.change) * world.grid.cell_area_m2();
         world.ledger.book_in(stage, Matter::Rock, laid_m3);
         world.ledger.book_out(stage, Matter::Rock, laid_m3);
         self.params.show(&run.solver, &run.bed, world);
@@ -215,11 +206,22 @@ fn bed(world: &World, rate: &[f32], lock: Lock) -> Bed {
     }
 }
 
+/// What was laid down between two states of a change, m summed over the cells.
+fn laid_m(grid: &Grid, before: &[f32], after: &[f32]) -> f64 {
+    sum_rows(grid.height, |y| {
+        let [was, now] = [before, after].map(|all| &all[y * grid.width..][..grid.width]);
+        now.iter().zip(was).map(|(&now, &was)| (f64::from(now) - f64::from(was)).max(0.0)).sum()
+    })
+}
+
 /// Raises a layer to these values wherever they are greater.
 pub(super) fn peak(world: &mut World, layer: Layer, values: &[f32]) {
-    for (most, &now) in world.layer_mut(layer).data.iter_mut().zip(values) {
-        *most = most.max(now);
-    }
+    let width = world.grid.width;
+    for_each_row(&mut world.layer_mut(layer).data, width, |y, row| {
+        for (most, &now) in row.iter_mut().zip(&values[y * width..]) {
+            *most = most.max(now);
+        }
+    });
 }
 
 /// Water that stands on the land, m³.

@@ -12,7 +12,8 @@
 //! A kill at any moment leaves the last pointer, and what it points to, whole. This file knows no process.
 
 use std::{
-    fs, io,
+    fs,
+    io::{self, Write as _},
     path::{Path, PathBuf},
     time::{Duration, Instant},
 };
@@ -198,7 +199,7 @@ impl Checkpoints {
         remove(&path).map_err(disk)?;
         fs::create_dir_all(&path).map_err(disk)?;
         store::write(world, &Provenance::default(), &path.join("world.zarr"))?;
-        let (state, bytes) = state.map(pack).unzip();
+        let state = pack(state, &path.join("process.bin")).map_err(disk)?;
         let head = Head {
             format: FORMAT,
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -208,7 +209,6 @@ impl Checkpoints {
         };
         let head = serde_json::to_vec_pretty(&head).map_err(|e| disk(e.into()))?;
         fs::write(path.join("checkpoint.json"), head).map_err(disk)?;
-        fs::write(path.join("process.bin"), bytes.unwrap_or_default()).map_err(disk)?;
         flush(&path).map_err(disk)?;
         self.point_to(number).map_err(disk)?;
         self.number = number;
@@ -263,18 +263,27 @@ fn newest(folder: &Path) -> Option<u64> {
     fs::read_to_string(folder.join("latest")).ok()?.trim().parse().ok()
 }
 
-fn pack(state: &State) -> (StateHead, Vec<u8>) {
-    let mut bytes = Vec::new();
-    for (_, field) in &state.fields {
-        bytes.extend(field.data.iter().flat_map(|v| v.to_le_bytes()));
+/// Writes a process's state, a run of values at a time: all its bytes at once would be a second copy of it.
+fn pack(state: Option<&State>, path: &Path) -> io::Result<Option<StateHead>> {
+    const RUN: usize = 1 << 16;
+    let mut file = io::BufWriter::new(fs::File::create(path)?);
+    let Some(State { fields, blob }) = state else { return file.flush().map(|()| None) };
+    let (mut sum, mut bytes) = (Sha256::new(), Vec::with_capacity(4 * RUN));
+    for values in fields.iter().flat_map(|(_, field)| field.data.chunks(RUN)) {
+        bytes.clear();
+        bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+        sum.update(&bytes);
+        file.write_all(&bytes)?;
     }
-    bytes.extend(&state.blob);
-    let fields = state.fields.iter().map(|(name, field)| FieldHead { name: name.clone(), grid: field.grid }).collect();
-    (StateHead { fields, blob: state.blob.len(), sha256: digest(&bytes) }, bytes)
+    sum.update(blob);
+    file.write_all(blob)?;
+    file.flush()?;
+    let fields = fields.iter().map(|(name, field)| FieldHead { name: name.clone(), grid: field.grid }).collect();
+    Ok(Some(StateHead { fields, blob: blob.len(), sha256: hex(&sum.finalize()) }))
 }
 
 fn unpack(head: &StateHead, bytes: &[u8]) -> Result<State, String> {
-    if digest(bytes) != head.sha256 {
+    if hex(&Sha256::digest(bytes)) != head.sha256 {
         return Err("process.bin has other bytes than were written".to_owned());
     }
     let mut rest = bytes;
@@ -292,8 +301,8 @@ fn unpack(head: &StateHead, bytes: &[u8]) -> Result<State, String> {
     Ok(State { fields, blob: rest.to_vec() })
 }
 
-fn digest(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+fn hex(digest: &[u8]) -> String {
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn remove(folder: &Path) -> io::Result<()> {

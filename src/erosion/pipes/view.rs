@@ -1,6 +1,6 @@
 //! What there is to look at while water runs.
 
-use crate::grid::{Edges, for_each_row};
+use crate::grid::{Edges, for_each_row, map_cells};
 
 use super::super::bed::Bed;
 use super::{family::Pipes, rules::SHEET_M};
@@ -9,8 +9,12 @@ impl Pipes {
     /// Depth of the water on land, m; none in the sea.
     pub fn water_m(&self, bed: &Bed) -> Vec<f32> {
         let sea = self.sea_m();
-        let wet = |(i, &depth): (usize, &f32)| if bed.height(i) < sea { 0.0 } else { depth };
-        self.depth.iter().enumerate().map(wet).collect()
+        let (width, mut water) = (self.grid().width, vec![0.0; self.depth.len()]);
+        map_cells(&mut water, width, |x, y| {
+            let i = y * width + x;
+            if bed.height(i) < sea { 0.0 } else { self.depth[i] }
+        });
+        water
     }
 
     /// Velocity to the east (axis 0) or south (axis 1), m/s.

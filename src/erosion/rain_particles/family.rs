@@ -206,7 +206,8 @@ impl Family for RainParticles {
         }
         let mut ground = Ground::new(bed);
         // Those over an open rim lay down on it: there is no step left to count them in.
-        let extent = self.grid.extent_m().map(|extent| (extent as f32).next_down());
+        // Inside by more than what rounding moves a place by, when it is counted in cells.
+        let extent = self.grid.extent_m().map(|extent| (extent * (1.0 - 1e-6)) as f32);
         for (values, extent) in [(&mut self.water.cloud.x, extent[0]), (&mut self.water.cloud.y, extent[1])] {
             for value in values {
                 *value = value.clamp(0.0, extent);

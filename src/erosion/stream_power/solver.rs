@@ -1,7 +1,7 @@
 //! Stream power over a world: reads the layers that steer it, steps, and writes the column back.
 
 use crate::{
-    erosion::column::{Change, Column},
+    erosion::column::{Change, Column, Ground},
     grid::Field,
     world::{Inflow, Layer, World},
 };
@@ -79,8 +79,7 @@ impl Solver {
         let moved = self.carver.step(&self.law, &forcing, &mut self.height_m, years);
         let cell_m2 = world.grid.cell_area_m2();
         let change = Change {
-            raised_m: self.carver.raised_m(),
-            height_m: &self.height_m,
+            ground: Ground::Heights([self.carver.raised_m(), &self.height_m]),
             lifted_m3: moved.lifted_m * cell_m2,
             left_m3: moved.left_m * cell_m2,
         };
