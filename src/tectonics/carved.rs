@@ -53,8 +53,6 @@ pub struct Carved {
     /// Its height as the map reads it, m.
     shown_m: Field<f32>,
     poses: Vec<Pose>,
-    /// Where the plates lay when the map was laid out.
-    first: Vec<Pose>,
     /// Height that the map would have now, had nobody carved it, m.
     expected: Field<f32>,
     /// What was worn off the tectonic cells before each step, m; with it a run can be replayed.
@@ -78,8 +76,6 @@ struct Motion<'a> {
     now: &'a Surface,
     /// Of each plate, from where it is to where it was.
     back: Vec<Back>,
-    /// Of each plate, from where it is to where it was when the map was laid out.
-    to_first: Vec<Back>,
     kept: &'a Field<f32>,
     span_myr: f64,
 }
@@ -127,7 +123,6 @@ impl Carved {
             under,
             unread,
             poses: poses(run),
-            first: poses(run),
             expected,
             surface,
             worn: Vec::new(),
@@ -176,9 +171,8 @@ impl Carved {
         let (now, poses) = (Surface::of(run, params, self.surface.window), poses(run));
         let sea_m = world.sea_level_m;
         let kept = self.relief_kept(&run.domain);
-        let to = |before: &[Pose]| poses.iter().zip(before).map(|(now, before)| Back::between(now, before)).collect();
-        let (back, to_first) = (to(&self.poses), to(&self.first));
-        let motion = Motion { domain: &run.domain, now: &now, back, to_first, kept: &kept, span_myr: span_yr * 1e-6 };
+        let back = poses.iter().zip(&self.poses).map(|(now, before)| Back::between(now, before)).collect();
+        let motion = Motion { domain: &run.domain, now: &now, back, kept: &kept, span_myr: span_yr * 1e-6 };
         let (height, shown_m) = (world.height(), now.shown(&self.reads_m));
         let carried = CARRIED.map(|layer| world.layer(layer));
         let carved = self.carved_on_the_whole(&height, &run.domain);
@@ -188,7 +182,7 @@ impl Carved {
             Some((from_m, _)) if beyond(from_m) => {
                 let rim = Corners::at(&world.grid, [0, 1].map(|k| from_m[k].clamp(0.0, extent_m[k])));
                 let reads = DVec2::new(rim.read(&self.reads_m[0]), rim.read(&self.reads_m[1]));
-                let height_m = self.fresh(x, y, &motion, plains);
+                let height_m = bare(&now, self.reads_at(x, y), world.grid.center_m(x, y), plains);
                 let carved_m = linear(&carved, run.domain.in_square(reads)) as f32;
                 Ground { height_m: height_m + carved_m, ..Ground::default() }
             }
@@ -202,7 +196,10 @@ impl Carved {
                 let carried = carried.map(|field| field.map_or(0.0, part));
                 Ground { height_m: height_m as f32, lift_m: (held_m - height_m) as f32, carried }
             }
-            None => Ground { height_m: self.fresh(x, y, &motion, plains), ..Ground::default() },
+            None => {
+                let height_m = bare(&now, self.reads_at(x, y), world.grid.center_m(x, y), plains);
+                Ground { height_m, ..Ground::default() }
+            }
         });
         (self.surface, self.poses, self.shown_m) = (now, poses, shown_m);
         self.write(&ground, span_yr, world);
@@ -225,16 +222,6 @@ impl Carved {
         let before = motion.back[motion.now.plate_at(&here) as usize].apply(at);
         let kept_m = linear(motion.kept, motion.domain.in_square(before));
         Some((self.shown_at(x, y, before - at), kept_m))
-    }
-
-    /// Height of ground that comes onto the map, m. Its hills are those of where its plate began, so that what follows it
-    /// over the same place brings others: the same hills step after step would be ripples.
-    fn fresh(&self, x: usize, y: usize, motion: &Motion, plains: &Plains) -> f32 {
-        let reads_m = self.reads_at(x, y);
-        let here = Corners::at(&motion.now.height.grid, motion.now.at(reads_m));
-        let began = motion.to_first[motion.now.plate_at(&here) as usize].apply(reads_m);
-        let at_m = DVec2::from(self.reads_m[0].grid.center_m(x, y)) + (began - reads_m);
-        bare(motion.now, reads_m, at_m.into(), plains)
     }
 
     fn write(&mut self, ground: &Field<Ground>, span_yr: f64, world: &mut World) {
