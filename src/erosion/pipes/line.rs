@@ -5,7 +5,7 @@ use std::hint::select_unpredictable;
 use super::{
     flow::hi,
     rows::{Row, Still, cut},
-    rules::{Beat, Rules, SOAK_M},
+    rules::{Beat, Rules},
     sediment,
     sums::total,
 };
@@ -97,7 +97,7 @@ impl Line {
         if beat.slide > 0.0 {
             let (deep, talus) = (&self.depth[1..][..w], &mut self.talus[1..][..w]);
             for i in 0..w {
-                talus[i] = rules.talus_m - rules.slack_m * sediment::ramp(deep[i] * (1.0 / SOAK_M));
+                talus[i] = rules.talus_m - rules.slack_m * sediment::ramp(deep[i] * rules.per_film);
             }
         }
         self.rained = total(got);

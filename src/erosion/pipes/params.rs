@@ -123,7 +123,7 @@ pub struct PipesParams {
     /// Steepest slope of loose ground.
     #[schemars(range(min = 1.0, max = 89.0), extend("x-unit" = "deg", "x-effect" = "steeper banks can stand"))]
     pub talus_angle_deg: f64,
-    /// Steepest slope of ground that stands in 30 cm of water or more; never more than that of dry ground.
+    /// Steepest slope of ground that stands in water; never more than that of dry ground.
     #[schemars(range(min = 1.0, max = 89.0), extend("x-unit" = "deg", "x-effect" = "narrower gullies"))]
     pub wet_talus_angle_deg: f64,
     /// How fast steeper ground slides, in the bed's time; 0 for never.

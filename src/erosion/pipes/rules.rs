@@ -22,8 +22,6 @@ pub const TIMID: f32 = 0.25;
 pub const STRIDE: f32 = 0.02;
 /// How far above the mean of its neighbours a bed can be and still get sediment, in cells: what lies unevenly evens out.
 pub const BUMP: f32 = 0.005;
-/// Depth of water in which a bank is soaked through, m: rain that runs off over a slope wets its skin alone.
-pub const SOAK_M: f32 = 0.3;
 /// Most of an excess that slides over a face in one step; eight faces stay monotone to 0.146.
 pub const SLIDE: f32 = 0.07;
 
