@@ -14,6 +14,7 @@ mod presets;
 mod probe;
 mod schema;
 mod source;
+mod stage;
 mod stages;
 #[cfg(test)]
 mod tests;
@@ -24,8 +25,9 @@ pub use error::{Problem, RecipeError};
 pub(crate) use near::nearest;
 pub use overrides::Overrides;
 pub use params::{Parameter, json_schema, markdown, parameters, world_parameters};
-pub use plan::{FilmTime, Plan, Stage};
+pub use plan::Plan;
 pub use presets::{Preset, all as presets, find as find_preset};
 pub use source::Source;
+pub use stage::{FilmTime, Stage};
 pub use stages::{Setting, StageKind, all as stage_kinds, find as find_stage};
 pub use world::{Size, WorldParams};

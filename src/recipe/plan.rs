@@ -8,12 +8,12 @@ use serde_json::Value as Json;
 
 use crate::{
     grid::Grid,
-    process::{Blend, Placement, Process, ProcessError},
+    process::{Blend, Placement, ProcessError},
     world::{Layer, Mask, open_picture},
 };
 
 use super::{
-    Overrides, Setting, Size, Source, StageKind, WorldParams,
+    FilmTime, Overrides, Size, Source, Stage, StageKind, WorldParams,
     error::{Problem, RecipeError},
     imports::Imports,
     near::nearest,
@@ -44,66 +44,6 @@ pub struct Plan {
     pub text: String,
     /// What a person should know before it runs, a line each.
     pub notes: Vec<String>,
-}
-
-/// One stage of a plan.
-#[derive(Clone, Debug)]
-pub struct Stage {
-    /// What it is.
-    pub kind: &'static StageKind,
-    /// Its name for random numbers and the ledger: its id, or kind#ordinal.
-    pub key: String,
-    /// Its name for people: its id, its kind where that is the only one, or kind#ordinal.
-    pub label: String,
-    /// Whether it runs.
-    pub enabled: bool,
-    /// Blend and mask.
-    pub placement: Placement,
-    /// An expert's number of steps.
-    pub steps: Option<u64>,
-    /// How long it takes in a film; its share of the usual length where it does not say.
-    pub film: Option<FilmTime>,
-    /// Its own parameters.
-    pub params: Json,
-    /// The stages that step in turn with it.
-    pub coupled: Vec<Stage>,
-}
-
-/// How long a stage takes in a film.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FilmTime {
-    /// So many seconds.
-    Seconds(f64),
-    /// A second for so many years of the world.
-    YearsPerSecond(f64),
-}
-
-impl Stage {
-    /// Whether it takes time in the world: it has a duration among its parameters.
-    pub fn takes_time(&self) -> bool {
-        let defaults = self.kind.defaults.as_object();
-        defaults.is_some_and(|keys| keys.keys().any(|key| key.starts_with("duration_")))
-    }
-
-    /// Whether its time is that of weather and not of the Earth: minutes or hours of water, which move no mountain.
-    pub fn takes_hours(&self) -> bool {
-        ["duration_min", "duration_h"].iter().any(|key| self.kind.defaults.get(key).is_some())
-    }
-
-    /// A fresh process.
-    pub fn build(&self) -> Result<Box<dyn Process>, ProcessError> {
-        let leads = !self.coupled.is_empty();
-        self.kind.build(&self.params, Setting { placement: self.placement.clone(), steps: self.steps, leads })
-    }
-
-    /// Whether it asks to step in turn with the stage before it.
-    fn follows(&self) -> bool {
-        self.params["coupled"] == Json::Bool(true)
-    }
-
-    fn is_called(&self, name: &str) -> bool {
-        self.label == name || self.key == name
-    }
 }
 
 /// The keys that every stage knows.

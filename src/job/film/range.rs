@@ -89,14 +89,14 @@ mod tests {
 
     #[test]
     fn the_span_holds_what_was_before_and_what_comes_after() {
-        let span = |heights: [f32; 2]| {
-            let mut world = World::new(Grid::new(2, 1, 20.0, Edges::Open), 0.0);
-            world.layer_mut(Layer::Bedrock).data.copy_from_slice(&heights);
-            world
+        let world = |heights: [f32; 2]| {
+            let mut made = World::new(Grid::new(2, 1, 20.0, Edges::Open), 0.0);
+            made.layer_mut(Layer::Bedrock).data.copy_from_slice(&heights);
+            made
         };
         let mut both = Span(None);
-        both.add(&span([0.0, 100.0]));
-        both.add(&span([-40.0, 60.0]));
+        both.add(&world([0.0, 100.0]));
+        both.add(&world([-40.0, 60.0]));
         assert_eq!(both.0, Some([-65.0, 125.0]));
     }
 }
