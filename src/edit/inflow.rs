@@ -7,7 +7,7 @@ use super::window::Window;
 use crate::{
     flow::{Drainage, outlets_but},
     grid::Field,
-    world::{Inflow, Sources, World},
+    world::{Inflow, World},
 };
 
 /// How far along the rim a river's lowest new cell is looked for, old cells.
@@ -27,8 +27,8 @@ impl Routed {
         let outlet = outlets_but(height, world.sea_level_m, &world.inflow_gates());
         let z: Vec<f64> = height.data.iter().map(|&z| z as f64).collect();
         let drainage = Drainage::of(world.grid, &z, &outlet);
-        let Sources { area_m2, discharge_m3_s } = world.sources();
-        let (area_m2, discharge_m3_s) = (drainage.accumulate(&area_m2), drainage.accumulate(&discharge_m3_s));
+        let area_m2 = drainage.accumulate(&world.catchment_sources_m2());
+        let discharge_m3_s = drainage.accumulate(&world.water_sources_m3_s());
         Self { drainage, height: z, area_m2, discharge_m3_s }
     }
 

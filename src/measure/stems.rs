@@ -1,7 +1,7 @@
 //! Long profiles: the largest rivers of a world from their mouths up along their main stems.
 
 use crate::{
-    flow::{Drainage, outlets_but},
+    flow::{LENGTHS, ROOT, Router, opposite, outlets_but},
     world::{Layer, World},
 };
 
@@ -25,47 +25,86 @@ pub struct StemPoint {
 
 /// The main stems of the rivers with the largest catchments, the largest first, at most `most`; each from its mouth up to the
 /// divide, always to where the larger catchment lies.
+///
+/// It is taken while solvers hold their own fields, so it keeps as few maps as it can: donors are looked for along the stems
+/// alone, and what gathered is read there before the next thing gathers in its place.
 pub fn main_stems(world: &World, most: usize) -> Vec<Vec<StemPoint>> {
-    let height = world.height();
-    let outlet = outlets_but(&height, world.sea_level_m, &world.inflow_gates());
-    let z: Vec<f64> = height.data.iter().map(|&z| z as f64).collect();
-    let d = Drainage::of(world.grid, &z, &outlet);
-    let sources = world.sources();
-    let area_m2 = d.accumulate(&sources.area_m2);
-    let discharge = match world.layer(Layer::Discharge) {
-        Some(field) => field.data.iter().map(|&v| v as f64).collect(),
-        None => d.accumulate(&sources.discharge_m3_s),
-    };
-    let mut donor: Vec<Option<usize>> = vec![None; d.len()];
-    let mut mouths = Vec::new();
-    for i in (0..d.len()).filter(|&i| !d.is_outlet(i)) {
-        let r = d.receiver[i] as usize;
-        if donor[r].is_none_or(|other| area_m2[i] > area_m2[other]) {
-            donor[r] = Some(i);
+    let (z, outlet) = ground(world);
+    let mut router = Router::new(world.grid);
+    router.route(&z, &outlet);
+    drop(outlet);
+    let mut area_m2 = world.catchment_sources_m2();
+    router.descend(&mut area_m2, |_, area| *area);
+    let mut stems = Vec::new();
+    for mouth in largest_mouths(&router, &area_m2, most) {
+        let stem = thinned(points(&router, mouth, &z, &area_m2));
+        if !stem.is_empty() {
+            stems.push(stem);
         }
     }
-    // Of the streams that end in one cell the largest is its river.
-    mouths.extend((0..d.len()).filter(|&i| d.is_outlet(i)).filter_map(|i| donor[i]));
-    // The largest first; of equals the one further north-west.
-    mouths.sort_by(|&a, &b| area_m2[b].total_cmp(&area_m2[a]).then(a.cmp(&b)));
-    let stem = |mouth: usize| -> Vec<StemPoint> {
-        let mut distance_m = 0.0;
-        let cells = std::iter::successors(Some(d.receiver[mouth] as usize), |&i| {
-            if i == d.receiver[mouth] as usize { Some(mouth) } else { donor[i] }
-        });
-        cells
-            .map(|i| {
-                distance_m += d.step_m(i);
-                StemPoint { distance_m, height_m: z[i], area_m2: area_m2[i], discharge_m3_s: discharge[i] }
-            })
-            .collect()
+    drop((z, area_m2));
+    let mut set = |discharge_m3_s: &dyn Fn(usize) -> f64| {
+        for (i, point) in stems.iter_mut().flatten() {
+            point.discharge_m3_s = discharge_m3_s(*i);
+        }
     };
-    let long = |stem: &Vec<StemPoint>| stem.len() >= LEAST_CELLS;
-    mouths.into_iter().take(most).map(stem).filter(long).map(thinned).collect()
+    match world.layer(Layer::Discharge) {
+        Some(field) => set(&|i| field.data[i] as f64),
+        None => {
+            let mut water = world.water_sources_m3_s();
+            router.descend(&mut water, |_, water| *water);
+            set(&|i| water[i]);
+        }
+    }
+    stems.into_iter().map(|stem| stem.into_iter().map(|(_, point)| point).collect()).collect()
+}
+
+/// Heights, m, and where water leaves.
+fn ground(world: &World) -> (Vec<f64>, Vec<bool>) {
+    let height = world.height();
+    let outlet = outlets_but(&height, world.sea_level_m, &world.inflow_gates());
+    (height.data.iter().map(|&z| z as f64).collect(), outlet)
+}
+
+/// The donor of a cell with the largest catchment; of equals the one further north-west.
+fn main_donor(router: &Router, area_m2: &[f64], cell: usize) -> Option<usize> {
+    let ways = router.ways();
+    let donors = router.compass().around(cell).filter(|&(step, j)| ways[j] == opposite(step)).map(|(_, j)| j);
+    donors.min_by(|&a, &b| area_m2[b].total_cmp(&area_m2[a]).then(a.cmp(&b)))
+}
+
+/// The last cells before the outlets of the largest rivers, the largest first. Of the streams that end in one cell the
+/// largest is its river.
+fn largest_mouths(router: &Router, area_m2: &[f64], most: usize) -> Vec<usize> {
+    let ways = router.ways();
+    let mut mouths: Vec<usize> = Vec::new();
+    for mouth in (0..ways.len()).filter(|&i| ways[i] == ROOT).filter_map(|i| main_donor(router, area_m2, i)) {
+        let larger = |&other: &usize| area_m2[other].total_cmp(&area_m2[mouth]).then(mouth.cmp(&other)).is_gt();
+        let at = mouths.partition_point(larger);
+        if at < most {
+            mouths.insert(at, mouth);
+            mouths.truncate(most);
+        }
+    }
+    mouths
+}
+
+/// The cells of a stem with what is known of them, from the outlet to the divide; none where it is too short.
+fn points(router: &Router, mouth: usize, z: &[f64], area_m2: &[f64]) -> Vec<(usize, StemPoint)> {
+    let (ways, cell_m) = (router.ways(), router.grid().cell_m);
+    let mut distance_m = 0.0;
+    let mut stem = Vec::new();
+    let mut next = Some(router.receiver(mouth));
+    while let Some(i) = next {
+        distance_m += LENGTHS.get(ways[i] as usize).map_or(0.0, |length| length * cell_m);
+        stem.push((i, StemPoint { distance_m, height_m: z[i], area_m2: area_m2[i], discharge_m3_s: 0.0 }));
+        next = if stem.len() == 1 { Some(mouth) } else { main_donor(router, area_m2, i) };
+    }
+    if stem.len() < LEAST_CELLS { Vec::new() } else { stem }
 }
 
 /// At most so many points, both ends among them.
-fn thinned(points: Vec<StemPoint>) -> Vec<StemPoint> {
+fn thinned<T: Copy>(points: Vec<T>) -> Vec<T> {
     if points.len() <= MOST_POINTS {
         return points;
     }

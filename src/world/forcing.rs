@@ -19,15 +19,6 @@ const USUAL_RUNOFF_MM_PER_YR: f64 = 1000.0;
 /// A Julian year.
 const SECONDS_PER_YEAR: f64 = 365.25 * 86_400.0;
 
-/// What each cell brings to the rivers: its own, and what comes in over the rim there.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sources {
-    /// Catchment, m².
-    pub area_m2: Vec<f64>,
-    /// Runoff, m³/s.
-    pub discharge_m3_s: Vec<f64>,
-}
-
 /// A river that comes in over the rim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inflow {
@@ -115,22 +106,28 @@ impl World {
             .collect()
     }
 
-    /// What each cell brings to the rivers. Runoff where a climate tells it, else rain, else a metre a year.
-    pub fn sources(&self) -> Sources {
+    /// The catchment that each cell brings to the rivers, m²: its own, and what lies behind a river that comes in there.
+    pub fn catchment_sources_m2(&self) -> Vec<f64> {
+        let mut area_m2 = vec![self.grid.cell_area_m2(); self.grid.cells()];
+        for inflow in self.inflows() {
+            area_m2[inflow.cell] += inflow.area_m2;
+        }
+        area_m2
+    }
+
+    /// The water that each cell brings to the rivers, m³/s: runoff where a climate tells it, else rain, else a metre a year,
+    /// and what comes in over the rim there.
+    pub fn water_sources_m3_s(&self) -> Vec<f64> {
         let water = self.layer(Layer::Runoff).or(self.layer(Layer::Rain));
         let per_mm = 1e-3 * self.grid.cell_area_m2() / SECONDS_PER_YEAR;
-        let mut sources = Sources {
-            area_m2: vec![self.grid.cell_area_m2(); self.grid.cells()],
-            discharge_m3_s: match water {
-                Some(field) => field.data.iter().map(|&mm| (mm as f64).max(0.0) * per_mm).collect(),
-                None => vec![USUAL_RUNOFF_MM_PER_YR * per_mm; self.grid.cells()],
-            },
+        let mut discharge_m3_s: Vec<f64> = match water {
+            Some(field) => field.data.iter().map(|&mm| (mm as f64).max(0.0) * per_mm).collect(),
+            None => vec![USUAL_RUNOFF_MM_PER_YR * per_mm; self.grid.cells()],
         };
         for inflow in self.inflows() {
-            sources.area_m2[inflow.cell] += inflow.area_m2;
-            sources.discharge_m3_s[inflow.cell] += inflow.discharge_m3_s;
+            discharge_m3_s[inflow.cell] += inflow.discharge_m3_s;
         }
-        sources
+        discharge_m3_s
     }
 
     /// The cells of the rim about each inflow: a river comes in there, so no water leaves, though the rim is open. In

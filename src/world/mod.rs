@@ -11,7 +11,7 @@ pub mod store;
 mod table;
 
 pub use catalogue::{Kind, Layer, Palette, Spec};
-pub use forcing::{Inflow, Sources};
+pub use forcing::Inflow;
 pub use ledger::{Account, Ledger, Matter};
 pub use mask::{Mask, MaskError};
 pub use picture::{PictureError, open_picture, sample};
