@@ -90,7 +90,7 @@ pub(super) fn over_rim(world: &World, routed: &Routed, window: &Window, ground: 
     };
     for i in (0..routed.drainage.len()).filter(|&i| !routed.drainage.is_outlet(i)) {
         let (from, to) = (own(i), own(routed.drainage.receiver[i] as usize));
-        if inside(from) || !inside(to) || (routed.height[i] < world.sea_level_m) {
+        if inside(from) || !inside(to) || (routed.height[i] <= world.sea_level_m) {
             continue;
         }
         // Where the way into the window meets its rim: the last of the sides it has to pass.

@@ -22,8 +22,8 @@ pub use router::{ROOT, Router};
 
 use crate::grid::{Edges, Field, Grid};
 
-/// The cells where water leaves: everything below the sea, and the rim of an open map. A map that has none of either
-/// drains to its lowest cell.
+/// The cells where water leaves: the sea, which is all that does not lie above its level, and the rim of an open map. A map
+/// that has none of either drains to its lowest cell.
 pub fn outlets(height: &Field<f32>, sea_level_m: f64) -> Vec<bool> {
     let grid = height.grid;
     let (w, h) = (grid.width, grid.height);
@@ -32,7 +32,7 @@ pub fn outlets(height: &Field<f32>, sea_level_m: f64) -> Vec<bool> {
         grid.edges == Edges::Open && (x == 0 || y == 0 || x + 1 == w || y + 1 == h)
     };
     let mut outlet: Vec<bool> =
-        height.data.iter().enumerate().map(|(i, &z)| (z as f64) < sea_level_m || rim(i)).collect();
+        height.data.iter().enumerate().map(|(i, &z)| (z as f64) <= sea_level_m || rim(i)).collect();
     if !outlet.contains(&true) {
         let lowest = (0..height.data.len()).min_by(|&a, &b| height.data[a].total_cmp(&height.data[b]));
         if let Some(i) = lowest {
@@ -47,7 +47,7 @@ pub fn outlets_but(height: &Field<f32>, sea_level_m: f64, gates: &[usize]) -> Ve
     let all = outlets(height, sea_level_m);
     let mut some = all.clone();
     for &i in gates {
-        some[i] &= (height.data[i] as f64) < sea_level_m;
+        some[i] &= (height.data[i] as f64) <= sea_level_m;
     }
     if some.contains(&true) { some } else { all }
 }

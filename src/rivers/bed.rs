@@ -39,9 +39,12 @@ pub fn cut(waters: &Waters, z: &[f64], sea_m: f64, cut_m: impl Fn(usize) -> f64)
         let (i, r) = (i as usize, waters.way.receiver[i as usize] as usize);
         let lake = waters.lake_of[i];
         if lake > 0 {
-            let level_m = waters.lakes[lake as usize - 1].level_m;
-            surface_m[i] =
-                if r == i || waters.lakes[lake as usize - 1].closed { level_m } else { surface_m[r].max(z[i]) };
+            let lake = &waters.lakes[lake as usize - 1];
+            surface_m[i] = match lake.dry {
+                true => z[i],
+                false if r == i || lake.closed => lake.level_m,
+                false => surface_m[r].max(z[i]),
+            };
             continue;
         }
         // A rim cell's bed has the sea for its only floor.

@@ -71,7 +71,7 @@ impl Network<'_> {
     }
 
     fn is_sea(&self, i: usize) -> bool {
-        self.waters.way.is_outlet(i) && self.beds.ground_m[i] < self.sea_m
+        self.waters.way.is_outlet(i) && self.beds.ground_m[i] <= self.sea_m
     }
 
     /// Whether a river runs in a cell.

@@ -48,9 +48,12 @@ pub fn hollows(grid: Grid, z: &[f64], surface: &[f64]) -> Vec<Hollow> {
     found
 }
 
-/// Least fall from a cell to the next, m: a hundred thousandth of the way, and enough for `f32` to tell the two apart.
+/// A fall that is still one when heights are stored in `f32`, as a sum of layers, m.
+const LEAST_FALL_M: f64 = 2e-3;
+
+/// Least fall that is made from a cell to the next, m: a hundred thousandth of the way, and enough to be stored.
 pub fn least_fall_m(grid: Grid) -> f64 {
-    (1e-5 * grid.cell_m).max(2e-3)
+    (1e-5 * grid.cell_m).max(LEAST_FALL_M)
 }
 
 /// Tilts cells without any fall by next to nothing, `tilt_m`, so that plains and levelled ground are drained by branching
@@ -66,33 +69,38 @@ pub fn tilt_plains(grid: Grid, z: &mut [f64], outlets: &[bool], tilt_m: impl Fn(
     z.iter_mut().zip(tilt).for_each(|(z, tilt)| *z += tilt);
 }
 
-/// Drains or fills every hollow that has no kept bottom, each by what moves less rock. `z` is changed; lakes keep one
-/// bottom each.
+/// Drains or fills every hollow that is no kept lake, each by what moves less rock. `z` is changed; under the lakes it stays
+/// as it is.
 pub fn level(grid: Grid, z: &mut [f64], outlets: &[bool], lakes: &[Hollow]) {
     let fall = least_fall_m(grid);
     let mut ends = outlets.to_vec();
-    let mut drowned = vec![false; z.len()];
-    for lake in lakes {
-        ends[lake.bottom as usize] = true;
-        lake.cells.iter().for_each(|&i| drowned[i as usize] = true);
-    }
+    lakes.iter().for_each(|lake| ends[lake.bottom as usize] = true);
+    let under = under(outlets, lakes);
     let way = Drainage::of(grid, z, &ends);
     for hollow in hollows(grid, z, &way.surface_m) {
         // Under water there is nothing to be gained by a ditch.
-        if !drowned[hollow.bottom as usize] {
+        if !under[hollow.bottom as usize] {
             breach(&way, z, &hollow, fall);
         }
     }
-    fill(grid, z, &ends);
+    fill(grid, z, &under);
 }
 
-/// Fills every hollow that has no end in it, with a fall to its outlet.
+/// The outlets, and all cells under lakes.
+pub fn under(outlets: &[bool], lakes: &[Hollow]) -> Vec<bool> {
+    let mut under = outlets.to_vec();
+    lakes.iter().flat_map(|lake| &lake.cells).for_each(|&i| under[i as usize] = true);
+    under
+}
+
+/// Fills every hollow that has no end in it; what is filled, and what lies all but level, falls to its outlet.
 pub fn fill(grid: Grid, z: &mut [f64], ends: &[bool]) {
     let fall = least_fall_m(grid);
     let way = Drainage::of(grid, z, ends);
     for &i in &way.order {
         let (i, r) = (i as usize, way.receiver[i as usize] as usize);
-        if r != i && z[i] < z[r] {
+        // Heights are rounded when they are stored: what falls by less might rise then.
+        if r != i && z[i] < z[r] + LEAST_FALL_M {
             z[i] = z[r] + fall;
         }
     }
@@ -163,14 +171,28 @@ mod tests {
     }
 
     #[test]
-    fn a_lake_that_is_kept_has_one_bottom() {
+    fn a_lake_that_is_kept_keeps_its_floor() {
         let (grid, mut z, outlet) = dammed(60.0);
+        // A second bowl under the same water.
         z[grid.index(6, 2)] -= 25.0;
+        let before = z.clone();
         let filled = Drainage::of(grid, &z, &outlet).surface_m;
         let lakes = hollows(grid, &z, &filled);
         level(grid, &mut z, &outlet, &lakes);
         let left = hollows(grid, &z, &Drainage::of(grid, &z, &outlet).surface_m);
-        assert_eq!((left.len(), pits(grid, &z)), (1, 1));
-        assert_eq!(left[0].bottom, lakes[0].bottom);
+        assert_eq!((left.len(), pits(grid, &z)), (1, 2));
+        assert_eq!(left, lakes);
+        assert!(lakes[0].cells.iter().all(|&i| z[i as usize] == before[i as usize]));
+    }
+
+    #[test]
+    fn what_lies_all_but_level_falls_far_enough_to_be_stored() {
+        let grid = Grid::new(30, 3, 3000.0, Edges::Closed);
+        let mut z: Vec<f64> = (0..grid.cells()).map(|i| 84.0 + 1e-7 * grid.cell_of(i).0 as f64).collect();
+        let ends: Vec<bool> = (0..grid.cells()).map(|i| grid.cell_of(i).0 == 0).collect();
+        fill(grid, &mut z, &ends);
+        let stored: Vec<f64> = z.iter().map(|&z| z as f32 as f64).collect();
+        let way = Drainage::of(grid, &z, &ends);
+        assert!((0..z.len()).filter(|&i| !ends[i]).all(|i| stored[way.receiver[i] as usize] < stored[i]));
     }
 }

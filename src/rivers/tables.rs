@@ -40,7 +40,7 @@ pub fn rivers(rivers: &[River], bankfull_ratio: f64) -> Table {
 /// The table `lakes`, from the largest.
 pub fn lakes(waters: &Waters, grid: Grid, ground_m: &[f64], surface_m: &[f64]) -> Table {
     let depth = |i: u32| (surface_m[i as usize] - ground_m[i as usize]).max(0.0);
-    let numbers = |f: &dyn Fn(&Lake) -> f64| waters.lakes.iter().map(f).collect::<Vec<f64>>();
+    let numbers = |f: &dyn Fn(&Lake) -> f64| waters.wet_lakes().map(f).collect::<Vec<f64>>();
     let middle = |lake: &Lake, axis: usize| {
         let (x, y) = grid.cell_of(lake.bottom as usize);
         grid.center_m(x, y)[axis] * 1e-3
@@ -54,7 +54,7 @@ pub fn lakes(waters: &Waters, grid: Grid, ground_m: &[f64], surface_m: &[f64]) -
         lake.cells.iter().filter(leaves).map(|&i| waters.discharge_m3_s[i as usize].max(0.0)).sum::<f64>()
     };
     Table::new("lakes")
-        .number("lake", "1", (1..=waters.lakes.len()).map(|id| id as f64).collect())
+        .number("lake", "1", (1..=waters.wet_lakes().count()).map(|id| id as f64).collect())
         .number("x_km", "km", numbers(&|lake| middle(lake, 0)))
         .number("y_km", "km", numbers(&|lake| middle(lake, 1)))
         .number("level_m", "m", numbers(&|lake| surface_m[lake.bottom as usize]))
@@ -67,7 +67,7 @@ pub fn lakes(waters: &Waters, grid: Grid, ground_m: &[f64], surface_m: &[f64]) -
 /// The table `lake_outlines`: rings around water (clockwise) and around islands (the other way).
 pub fn outlines(waters: &Waters, grid: Grid, ground_m: &[f64], surface_m: &[f64]) -> Table {
     let (mut id, mut ring, mut x, mut y) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (lake, number) in waters.lakes.iter().zip(1..) {
+    for (lake, number) in waters.wet_lakes().zip(1..) {
         let level_m = surface_m[lake.bottom as usize];
         let wet = |i: usize| waters.lake_of[i] == number;
         let rings = rings(grid, lake, |i| {

@@ -26,13 +26,15 @@ pub struct Lake {
     pub level_m: f64,
     /// Whether it loses to the air all that it is given.
     pub closed: bool,
+    /// Whether no water comes to it at all: a hollow, and no lake.
+    pub dry: bool,
 }
 
 /// Rivers and lakes cell by cell.
 pub struct Waters {
     /// The way down from each cell.
     pub way: Drainage,
-    /// The lakes, largest first.
+    /// The lakes, largest first; after them the hollows that are dry.
     pub lakes: Vec<Lake>,
     /// Which lake a cell lies in, numbered from 1; 0 on dry land.
     pub lake_of: Vec<u32>,
@@ -45,7 +47,8 @@ impl Waters {
     pub fn of(way: Drainage, z: &[f64], outlets: &[bool], climate: &Climate) -> Self {
         let grid = way.grid;
         let open = |way: &Drainage| -> Vec<Lake> {
-            let lake = |h: Hollow| Lake { cells: h.cells, bottom: h.bottom, level_m: h.level_m, closed: false };
+            let lake =
+                |h: Hollow| Lake { cells: h.cells, bottom: h.bottom, level_m: h.level_m, closed: false, dry: false };
             hollows(grid, z, &way.surface_m).into_iter().map(lake).collect()
         };
         let mut waters = Self::gather(way, open, climate);
@@ -63,7 +66,11 @@ impl Waters {
 
     fn gather(way: Drainage, lakes: impl FnOnce(&Drainage) -> Vec<Lake>, climate: &Climate) -> Self {
         let mut lakes = lakes(&way);
-        lakes.sort_by_key(|lake| (std::cmp::Reverse(lake.cells.len()), lake.bottom));
+        // What comes to a lake comes from above: from itself or over its shore.
+        let wet = way.accumulate(&climate.runoff_m3_s);
+        lakes.iter_mut().for_each(|lake| lake.dry = lake.cells.iter().all(|&i| wet[i as usize] <= 0.0));
+        drop(wet);
+        lakes.sort_by_key(|lake| (lake.dry, std::cmp::Reverse(lake.cells.len()), lake.bottom));
         let mut lake_of = vec![0; way.len()];
         for (lake, id) in lakes.iter().zip(1..) {
             lake.cells.iter().for_each(|&i| lake_of[i as usize] = id);
@@ -81,6 +88,11 @@ impl Waters {
             }
         }
         Self { way, lakes, lake_of, discharge_m3_s }
+    }
+
+    /// The lakes that water comes to, largest first.
+    pub fn wet_lakes(&self) -> impl Iterator<Item = &Lake> {
+        self.lakes.iter().take_while(|lake| !lake.dry)
     }
 
     /// The lakes whose outflow would be negative, with the level at which gain and loss are even.
@@ -105,7 +117,7 @@ impl Waters {
             let mut heights: Vec<f64> = lake.cells.iter().map(|&i| z[i as usize]).collect();
             let (_, &mut level_m, _) = heights.select_nth_unstable_by(wet, f64::total_cmp);
             let cells = pool(grid, z, lake.bottom, level_m);
-            closed.push(Lake { cells, bottom: lake.bottom, level_m, closed: true });
+            closed.push(Lake { cells, bottom: lake.bottom, level_m, closed: true, dry: false });
         }
         closed.retain(|lake| lake.cells.len() > 1);
         closed
