@@ -38,19 +38,26 @@ use crate::{
 impl ClimateParams {
     /// The stage as a process.
     pub fn process(self, placement: Placement) -> Box<dyn Process> {
-        Box::new(Climate { params: self, placement })
+        Box::new(Climate { params: self, placement, dry: false })
     }
 }
 
 struct Climate {
     params: ClimateParams,
     placement: Placement,
+    /// Whether no rain fell when it last looked.
+    dry: bool,
 }
 
 impl Climate {
-    fn weather(&self, world: &World) -> Result<Weather, ProcessError> {
+    /// Looks at the ground and writes what weather it has.
+    fn look(&mut self, world: &mut World) -> Result<(), ProcessError> {
         let share = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
-        Ok(Weather::over(&world.height(), world.sea_level_m, &self.params, share.as_ref()))
+        let weather = Weather::over(&world.height(), world.sea_level_m, &self.params, share.as_ref());
+        let asked = self.params.rain_mm_per_yr.is_some() || self.placement.mask.is_some();
+        self.dry = !asked && weather.rain_mm_per_yr.data.iter().all(|&rain| rain <= 0.0);
+        show(weather, world);
+        Ok(())
     }
 }
 
@@ -73,21 +80,25 @@ impl Process for Climate {
 
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
         context.check()?;
-        let weather = self.weather(world)?;
+        self.look(world)?;
         context.check()?;
-        show(weather, world);
         Ok(Step::WHOLE)
     }
 
+    fn findings(&self) -> Vec<String> {
+        let why = "no rain falls: there is no sea, and no rim over which moist air comes in";
+        let dry = self.dry.then(|| format!("{why}; set rain_mm_per_yr if it is to rain all the same"));
+        dry.into_iter().collect()
+    }
+
     fn follow(&mut self, world: &mut World, _context: &Context, _span_yr: f64) -> Result<(), ProcessError> {
-        show(self.weather(world)?, world);
-        Ok(())
+        self.look(world)
     }
 
     fn publish(&mut self, world: &mut World, _context: &Context) -> Result<(), ProcessError> {
         // Those it steps in turn with have changed the ground since.
         if self.params.coupled {
-            show(self.weather(world)?, world);
+            self.look(world)?;
         }
         Ok(())
     }
