@@ -5,7 +5,8 @@
 //! step and held during it. It grows without bound at `S_c`, so it is capped; what is steeper than the cap allows goes as
 //! fast as the cap lets it. Steps are explicit, each within the limit of the steepest face there is.
 //!
-//! The sea floor rests; what reaches it stays at the coast. Nothing crosses the rim.
+//! The sea floor rests; what reaches it stays at the coast. Nothing crosses the rim. Where a climate is known, the diffusivity
+//! goes with the pace at which rock weathers there.
 
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -17,7 +18,10 @@ use crate::{
     world::{Layer, World},
 };
 
-use super::column::{Change, Column, Ground};
+use super::{
+    column::{Change, Column, Ground},
+    weathering::pace,
+};
 
 /// Most that nearness to the critical slope can speed creep up.
 const FASTEST: f64 = 100.0;
@@ -39,11 +43,14 @@ pub struct HillslopeParams {
     /// Slope near which everything slides; 90 for plain diffusion.
     #[schemars(range(min = 5.0, max = 90.0), extend("x-unit" = "deg", "x-effect" = "steeper slopes can stand"))]
     pub critical_slope_deg: f64,
+    /// Whether temperature and rain set the pace, where a climate is known; the diffusivity is then that of 10 °C and 1000 mm.
+    #[schemars(extend("x-effect" = "true: quick where it is warm and wet or freezes and thaws, slow where it is dry"))]
+    pub weathering: bool,
 }
 
 impl Default for HillslopeParams {
     fn default() -> Self {
-        Self { duration_kyr: 100.0, diffusivity_m2_per_yr: 0.02, critical_slope_deg: 45.0 }
+        Self { duration_kyr: 100.0, diffusivity_m2_per_yr: 0.02, critical_slope_deg: 45.0, weathering: true }
     }
 }
 
@@ -68,8 +75,25 @@ struct Stage {
 }
 
 struct Run {
-    mask: Option<Field<f32>>,
+    /// Share of the diffusivity that cells have by mask and weather.
+    share: Option<Field<f32>>,
+    /// What the diffusivity is multiplied by where that share is 1.
+    most: f64,
     column: Column,
+}
+
+impl Run {
+    fn begin(stage: &Stage, world: &World) -> Result<Self, ProcessError> {
+        let mask = stage.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
+        let Some(pace) = stage.params.weathering.then(|| pace(world)).flatten() else {
+            return Ok(Self { share: mask, most: 1.0, column: Column::new(world.grid) });
+        };
+        let mut share = Field { grid: world.grid, data: pace.share };
+        if let Some(mask) = mask {
+            share.data.iter_mut().zip(&mask.data).for_each(|(share, mask)| *share *= mask);
+        }
+        Ok(Self { share: Some(share), most: pace.most, column: Column::new(world.grid) })
+    }
 }
 
 impl Process for Stage {
@@ -97,43 +121,51 @@ impl Process for Stage {
 
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
         context.check()?;
-        if self.run.is_none() {
-            let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
-            self.run = Some(Run { mask, column: Column::new(world.grid) });
-        }
-        let Some(run) = &mut self.run else { return Ok(Step::WHOLE) };
+        let mut run = match self.run.take() {
+            Some(run) => run,
+            None => Run::begin(self, world)?,
+        };
         let years = 1e3 * self.params.duration_kyr / self.steps as f64;
         let mut before = Vec::new();
         run.column.read(world, &mut before);
-        let (sea_m, mask) = (world.sea_level_m, &run.mask);
+        let (sea_m, share) = (world.sea_level_m, &run.share);
         let open: Vec<f32> = before
             .par_iter()
             .enumerate()
-            .map(|(i, &z)| if z < sea_m { 0.0 } else { mask.as_ref().map_or(1.0, |mask| mask.data[i]) })
+            .map(|(i, &z)| if z < sea_m { 0.0 } else { share.as_ref().map_or(1.0, |share| share.data[i]) })
             .collect();
         let creep = Creep { grid: world.grid, critical: self.params.critical(), open: &open };
         let mut height_m = before.clone();
         // Cancelled half way, the world has not been written to.
-        creep.run(&mut height_m, self.params.diffusivity_m2_per_yr * years, || context.check())?;
+        let spread_m2 = self.params.diffusivity_m2_per_yr * run.most * years;
+        if let Err(stopped) = creep.run(&mut height_m, spread_m2, || context.check()) {
+            self.run = Some(run);
+            return Err(stopped);
+        }
         let change = Change { ground: Ground::Heights([&before, &height_m]), lifted_m3: 0.0, left_m3: 0.0 };
         run.column.write(world, &change, context.stage);
+        self.run = Some(run);
         self.done += 1;
         Ok(Step { done: self.done as f64 / self.steps as f64, elapsed_yr: years })
     }
 
     fn save(&self) -> State {
         let fields = self.run.iter().flat_map(|run| {
-            let mask = run.mask.iter().map(|mask| ("mask".to_owned(), mask.clone()));
-            std::iter::once(("rest".to_owned(), run.column.rest().clone())).chain(mask)
+            let share = run.share.iter().map(|share| ("share".to_owned(), share.clone()));
+            std::iter::once(("rest".to_owned(), run.column.rest().clone())).chain(share)
         });
-        State { fields: fields.collect(), blob: self.done.to_le_bytes().to_vec() }
+        let most = self.run.as_ref().map_or(1.0, |run| run.most);
+        State { fields: fields.collect(), blob: [self.done.to_le_bytes(), most.to_le_bytes()].concat() }
     }
 
     fn restore(&mut self, state: State, _context: &Context) -> Result<(), ProcessError> {
         let broken = || ProcessError::Failed("the saved state of hillslope is broken".to_owned());
-        self.done = u64::from_le_bytes(state.blob.try_into().map_err(|_| broken())?);
+        let (words, []) = state.blob.as_chunks::<8>() else { return Err(broken()) };
+        let &[done, most] = words else { return Err(broken()) };
+        let most = f64::from_le_bytes(most);
+        self.done = u64::from_le_bytes(done);
         let field = |wanted: &str| state.fields.iter().find(|(name, _)| name == wanted).map(|(_, field)| field.clone());
-        self.run = field("rest").map(|rest| Run { mask: field("mask"), column: Column::restored(rest) });
+        self.run = field("rest").map(|rest| Run { share: field("share"), most, column: Column::restored(rest) });
         Ok(())
     }
 }

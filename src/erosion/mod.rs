@@ -17,6 +17,7 @@ pub mod rain_particles;
 mod stage;
 pub mod stream_power;
 pub mod thermal;
+mod weathering;
 
 pub use bed::{Bed, Family, Moved, Part, Saved};
 pub use droplets::{Droplets, DropletsParams};
@@ -27,3 +28,4 @@ pub use rain_particles::{RainParticles, RainParticlesParams};
 pub use stage::Lock;
 pub use stream_power::StreamPowerParams;
 pub use thermal::{Thermal, ThermalMethod, ThermalParams};
+pub use weathering::weathering;

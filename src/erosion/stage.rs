@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     bed::{Bed, Family, Moved, Part, Saved},
     column::{Change, Column, Ground},
+    weathering::pace,
 };
 use crate::{
     grid::{Field, Grid, for_each_row, sum_f64, sum_rows},
@@ -45,6 +46,12 @@ pub trait FamilyParams: Send + Sync + 'static {
 
     /// What stays where it is.
     fn lock(&self) -> Lock;
+
+    /// Whether its rates go with the pace of weathering, where a climate is known. They are then shares of what the fastest
+    /// cell has, by which the solver has to multiply.
+    fn weathers(&self) -> bool {
+        false
+    }
 
     /// What passes on the clock of the land, years.
     fn duration_yr(&self) -> f64;
@@ -125,15 +132,13 @@ impl<T: FamilyParams> Stage<T> {
         Ok(Run { column: Column::new(world.grid), bed, solver })
     }
 
-    /// Share of every rate by mask and hardness; empty where there is neither.
+    /// Share of every rate by mask, hardness and weather; empty where there is none of them.
     fn rates(&self, world: &World, mask: Option<Field<f32>>) -> Vec<f32> {
         let soft = world.layer(Layer::Hardness).map(|hardness| hardness.map(|h| (1.0 - h).clamp(0.0, 1.0)).data);
-        match (mask, soft) {
-            (None, None) => Vec::new(),
-            (Some(mask), None) => mask.data,
-            (None, Some(soft)) => soft,
-            (Some(mask), Some(soft)) => mask.data.iter().zip(&soft).map(|(m, s)| m * s).collect(),
-        }
+        let pace = self.params.weathers().then(|| pace(world)).flatten().map(|pace| pace.share);
+        let shares = [mask.map(|mask| mask.data), soft, pace].into_iter().flatten();
+        let both = |a: Vec<f32>, b: Vec<f32>| a.iter().zip(&b).map(|(a, b)| a * b).collect();
+        shares.reduce(both).unwrap_or_default()
     }
 
     /// A run from its saved state.

@@ -41,6 +41,9 @@ pub struct ThermalParams {
     /// Rasters of larger cells, each twice the one before, on which the ground slides first.
     #[schemars(range(min = 0, max = 3), extend("x-unit" = "1", "x-effect" = "long slopes come to rest in fewer passes"))]
     pub coarse_levels: u32,
+    /// Whether temperature and rain set the pace, where a climate is known; the rate is then that of 10 °C and 1000 mm.
+    #[schemars(extend("x-effect" = "true: quick where it is warm and wet or freezes and thaws, slow where it is dry"))]
+    pub weathering: bool,
     /// What stays where it is.
     #[schemars(extend("x-effect" = "coast: land stays land, sea stays sea"))]
     pub lock: Lock,
@@ -71,6 +74,7 @@ impl Default for ThermalParams {
             hard_to_m: 0.0,
             hard_rate: 1.0,
             coarse_levels: 0,
+            weathering: true,
             lock: Lock::None,
         }
     }

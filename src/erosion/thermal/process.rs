@@ -5,6 +5,7 @@ use crate::{
     erosion::{
         bed::Bed,
         stage::{FamilyParams, Lock, Stage},
+        weathering::pace,
     },
     grid::Grid,
     noise::Key,
@@ -32,6 +33,10 @@ impl FamilyParams for ThermalParams {
         self.lock
     }
 
+    fn weathers(&self) -> bool {
+        self.weathering
+    }
+
     fn duration_yr(&self) -> f64 {
         self.duration_yr
     }
@@ -49,6 +54,7 @@ impl FamilyParams for ThermalParams {
 
     fn solver(&self, bed: &Bed, world: &World, _key: Key) -> Result<Thermal, ProcessError> {
         let loose = world.layer(Layer::Sediment).map_or_else(|| vec![0.0; bed.start.len()], |s| s.data.clone());
-        Ok(Thermal::new(self.clone(), bed, loose))
+        let most = self.weathering.then(|| pace(world)).flatten().map_or(1.0, |pace| pace.most);
+        Ok(Thermal::new(Self { rate_per_yr: self.rate_per_yr * most, ..self.clone() }, bed, loose))
     }
 }
