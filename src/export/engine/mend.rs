@@ -1,9 +1,15 @@
-//! What to add to a recipe so that its world is fine enough for an engine: stages that zoom into the part wanted.
+//! What to add to a recipe so that its world is fine enough for an engine: stages that zoom into the part wanted, and let water
+//! work on the detail that each adds.
 
 /// Distance between vertices that a player's feet don't mind, m.
 const FINE_M: f64 = 5.0;
 /// How many times smaller the window of one zoom may be: streams between two zooms shape what lies between.
 const MOST_AT_ONCE: f64 = 20.0;
+/// Years that streams get for each metre of a window's side, and at least: detail is noise until water has worked on it.
+const YEARS_PER_M: f64 = 2.0;
+const LEAST_YEARS: f64 = 10e3;
+/// Steps that they take.
+const STEPS: f64 = 20.0;
 
 /// A square part of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,10 +41,21 @@ pub fn zooms(extent_m: [f64; 2], vertices: usize, wanted: Part) -> String {
         let [x_m, y_m, whole_m] = [place(0), place(1), side_m].map(|m| (m + 1e-6).floor());
         let [x_km, y_km, side_km] = [x_m, y_m, whole_m].map(km);
         text += &format!("\n  [[stage]]\n  kind = \"zoom\"\n  window_km = [{x_km}, {y_km}, {side_km}]");
+        text += &streams(whole_m);
         corner_m = [corner_m[0] + x_m, corner_m[1] + y_m];
         now_m = [whole_m; 2];
     }
-    text
+    text + "\n\n  [[stage]]\n  kind = \"rivers\""
+}
+
+/// The stage that lets streams carve a window.
+fn streams(side_m: f64) -> String {
+    let kyr = (1e-3 * (YEARS_PER_M * side_m).max(LEAST_YEARS)).round();
+    format!(
+        "\n\n  [[stage]]\n  kind = \"stream_power\"\n  duration_myr = {}\n  step_kyr = {}\n  talus_all_round = true\n  rim = \"held\"\n",
+        kyr * 1e-3,
+        kyr / STEPS
+    )
 }
 
 /// Whole metres as kilometres.
@@ -64,6 +81,10 @@ mod tests {
         // A part near the corner stays on the map.
         let corner = Part { middle_m: [100.0, 100.0], side_m: 2e3 };
         let text = zooms([100e3, 100e3], 1009, corner);
-        assert!(text.contains("[0, 0, ") && text.ends_with("2]"), "{text}");
+        assert!(text.contains("[0, 0, ") && text.contains(", 2]\n"), "{text}");
+        // What a zoom adds is carved, and in the end there are rivers.
+        let kinds: Vec<&str> = text.lines().filter(|line| line.contains("kind")).map(str::trim).collect();
+        let [zoom, streams] = ["kind = \"zoom\"", "kind = \"stream_power\""];
+        assert_eq!(kinds, [zoom, streams, zoom, streams, "kind = \"rivers\""], "{text}");
     }
 }

@@ -30,6 +30,7 @@ pub fn markdown(subjects: &[Subject], plots: &str) -> (String, Vec<(String, Stri
     }
     page.push_str("\n## How to read this\n\n");
     CAVEATS.iter().for_each(|caveat| page.push_str(&format!("- {caveat}\n")));
+    let _ = write!(page, "\n## Methods and sources\n\n{}", metrics_table());
     (page, files)
 }
 
