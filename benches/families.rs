@@ -100,24 +100,28 @@ fn drops(c: &mut Criterion) {
     let params = DropletsParams::default();
     let round = |bed: &mut Bed, drops: &mut Droplets, step: u64| drops.advance(bed, Part { step, steps: 16 });
     let fresh = |bed: &Bed| Droplets::new(&params, &bed.grid, Key::new(1));
-    // Ways grow longer from round to round, so that the same round is taken again and again: the second.
-    let mut bed = hills(1024);
-    let mut first = fresh(&bed);
-    round(&mut bed, &mut first, 0);
-    let steps = {
-        let (mut bed, mut drops) = (bed.clone(), fresh(&bed));
-        round(&mut bed, &mut drops, 1);
-        drops.steps_taken()
-    };
     let mut group = c.benchmark_group("droplets");
-    group.sample_size(10).throughput(Throughput::Elements(steps));
-    for threads in [1, 2] {
-        let pool = on(threads);
-        group.bench_function(BenchmarkId::new(format!("{threads} threads"), 1024), |b| {
-            let begin = || (bed.clone(), fresh(&bed));
-            let second = |(bed, drops): &mut (Bed, Droplets)| pool.install(|| round(bed, drops, 1));
-            b.iter_batched_ref(begin, second, BatchSize::PerIteration)
-        });
+    group.sample_size(10);
+    // The smaller map has hardly more windows than two threads have lanes.
+    for size in [1024, 2048] {
+        // Ways grow longer from round to round, so that the same round is taken again and again: the second.
+        let mut bed = hills(size);
+        let mut first = fresh(&bed);
+        round(&mut bed, &mut first, 0);
+        let steps = {
+            let (mut bed, mut drops) = (bed.clone(), fresh(&bed));
+            round(&mut bed, &mut drops, 1);
+            drops.steps_taken()
+        };
+        group.throughput(Throughput::Elements(steps));
+        for threads in [1, 2] {
+            let pool = on(threads);
+            group.bench_function(BenchmarkId::new(format!("{threads} threads"), size), |b| {
+                let begin = || (bed.clone(), fresh(&bed));
+                let second = |(bed, drops): &mut (Bed, Droplets)| pool.install(|| round(bed, drops, 1));
+                b.iter_batched_ref(begin, second, BatchSize::PerIteration)
+            });
+        }
     }
     group.finish();
 }

@@ -8,6 +8,7 @@
 //! | `bed` | width and depth of rivers, and their beds |
 //! | `course` | rivers as smooth lines |
 //! | `tables` | rivers, lakes and their outlines as tables |
+//! | `wetness` | how wet ground stays |
 //! | `stage` | the process: what it reads, and what it writes and books |
 //!
 //! It takes no time and makes no valleys: the ground must have been carved before. It changes heights by no more than the
@@ -23,5 +24,6 @@ mod tables;
 #[cfg(test)]
 mod tests;
 mod waters;
+mod wetness;
 
 pub use params::RiversParams;

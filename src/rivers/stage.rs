@@ -4,9 +4,10 @@ use super::{
     RiversParams,
     bed::{self, Beds},
     course::Network,
-    hollows::{Hollow, fill, hollows, least_fall_m, level, tilt_plains},
+    hollows::{Hollow, fill, hollows, least_fall_m, level, tilt_plains, under},
     tables,
     waters::{Climate, Waters},
+    wetness,
 };
 use crate::{
     flow::{Drainage, outlets_but},
@@ -32,13 +33,15 @@ const TILT_M: f64 = 1e-6;
 impl RiversParams {
     /// The process.
     pub fn process(self, placement: Placement) -> Box<dyn Process> {
-        Box::new(Rivers { params: self, placement })
+        Box::new(Rivers { params: self, placement, dry: 0 })
     }
 }
 
 struct Rivers {
     params: RiversParams,
     placement: Placement,
+    /// Hollows large enough for a lake that no water comes to.
+    dry: usize,
 }
 
 impl Process for Rivers {
@@ -59,6 +62,7 @@ impl Process for Rivers {
             Layer::LakeDepth,
             Layer::Basin,
             Layer::StreamOrder,
+            Layer::Wetness,
         ]
     }
 
@@ -67,8 +71,14 @@ impl Process for Rivers {
         let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
         let found = self.find(world, context)?;
         context.check()?;
+        self.dry = found.waters.lakes.len() - found.waters.wet_lakes().count();
         self.write(found, mask.as_ref(), world, context);
         Ok(Step::WHOLE)
+    }
+
+    fn findings(&self) -> Vec<String> {
+        let dry = (self.dry > 0).then(|| format!("no water comes to {} hollows, which are dry and no lakes", self.dry));
+        dry.into_iter().collect()
     }
 
     fn save(&self) -> State {
@@ -92,7 +102,7 @@ impl Rivers {
     fn find(&self, world: &World, context: &Context) -> Result<Found, ProcessError> {
         let (grid, sea_m, params) = (world.grid, world.sea_level_m, &self.params);
         let height = world.height();
-        let sea: Vec<bool> = height.data.iter().map(|&h| (h as f64) < sea_m).collect();
+        let sea: Vec<bool> = height.data.iter().map(|&h| (h as f64) <= sea_m).collect();
         let outlet = outlets_but(&height, sea_m, &world.inflow_gates());
         let mut z: Vec<f64> = height.data.iter().map(|&h| h as f64).collect();
 
@@ -116,16 +126,17 @@ impl Rivers {
             context.check()?;
             level(grid, &mut z, &outlet, &lakes);
             let way = Drainage::of(grid, &z, &outlet);
-            let left = hollows(grid, &z, &way.surface_m);
-            if left.iter().all(worth) || lakes.is_empty() {
+            let mut left = hollows(grid, &z, &way.surface_m);
+            let (found, before) = (left.len(), lakes.len());
+            left.retain(worth);
+            lakes = left;
+            if lakes.len() == found {
                 break way;
             }
-            // Fewer at each turn, so that it ends.
-            let before = lakes.len();
-            lakes = left;
-            lakes.retain(worth);
+            // Fewer at each turn, so that it ends; else what is no lake is filled.
             if lakes.len() >= before {
-                break way;
+                fill(grid, &mut z, &under(&outlet, &lakes));
+                break Drainage::of(grid, &z, &outlet);
             }
         };
         context.check()?;
@@ -194,6 +205,8 @@ impl Rivers {
         put(Layer::LakeDepth, &|i| if lake(i) { (beds.surface_m[i] - beds.ground_m[i]).max(0.0) } else { 0.0 });
         put(Layer::Basin, &|i| basin[i] as f64);
         put(Layer::StreamOrder, &|i| if river(i) { order[i] as f64 } else { 0.0 });
+        let wetness = wetness::index(&waters.way);
+        put(Layer::Wetness, &|i| if sea[i] { 0.0 } else { wetness[i] });
     }
 }
 

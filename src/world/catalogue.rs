@@ -131,6 +131,8 @@ catalogue! {
     /// Strahler's order of the stream; 0 where none runs.
     StreamOrder: "stream_order", "Stream order", "1", [0.0, 9.0], Categorical,
         Kind::Class(&["none", "1", "2", "3", "4", "5", "6", "7", "8", "9"]);
+    /// Topographic wetness index: logarithm of what drains through a metre of contour over the slope; 0 in the sea.
+    Wetness: "wetness", "Wetness", "ln m", [2.0, 14.0], Water, Kind::Continuous;
     /// Most water that passed a cell while it ran, in the last stage that let it run.
     Flow: "flow", "Flow of storm water", "m3/s", [0.0, 50.0], Flow, Kind::Continuous;
     /// Greatest speed of that water.
