@@ -142,7 +142,7 @@ impl Rivers {
         context.check()?;
 
         let climate = self.climate(world, &sea);
-        let waters = Waters::of(way, &z, &outlet, &climate);
+        let waters = Waters::of(way, &mut z, &outlet, &climate, worth);
         context.check()?;
         let order = waters.order(self.least_m3_s(&climate, &sea));
         let bankfull = |i: usize| waters.discharge_m3_s[i] * params.bankfull_ratio;

@@ -5,7 +5,7 @@ use crate::{
     grid::Grid,
 };
 
-use super::hollows::{Hollow, hollows};
+use super::hollows::{Hollow, fill, hollows, under};
 
 /// What the waters are found from.
 pub struct Climate {
@@ -43,29 +43,37 @@ pub struct Waters {
 }
 
 impl Waters {
-    /// The waters on a ground that has been routed to its outlets.
-    pub fn of(way: Drainage, z: &[f64], outlets: &[bool], climate: &Climate) -> Self {
+    /// The waters on a ground that has been routed to its outlets. Where lakes fall below their brims, hollows of the ground
+    /// that comes up are filled unless they are `worth` a lake.
+    pub fn of(
+        way: Drainage,
+        z: &mut [f64],
+        outlets: &[bool],
+        climate: &Climate,
+        worth: impl Fn(&Hollow) -> bool,
+    ) -> Self {
         let grid = way.grid;
-        let open = |way: &Drainage| -> Vec<Lake> {
-            let lake =
-                |h: Hollow| Lake { cells: h.cells, bottom: h.bottom, level_m: h.level_m, closed: false, dry: false };
-            hollows(grid, z, &way.surface_m).into_iter().map(lake).collect()
-        };
-        let mut waters = Self::gather(way, open, climate);
-        if climate.loss_m3_s > 0.0 {
-            let closed = waters.closed(grid, z, climate);
-            if !closed.is_empty() {
-                let mut ends = outlets.to_vec();
-                closed.iter().for_each(|lake| ends[lake.bottom as usize] = true);
-                let lakes = |way: &Drainage| open(way).into_iter().chain(closed).collect();
-                waters = Self::gather(Drainage::of(grid, z, &ends), lakes, climate);
-            }
+        let lakes = open(hollows(grid, z, &way.surface_m));
+        let waters = Self::gather(way, lakes, climate);
+        if climate.loss_m3_s <= 0.0 {
+            return waters;
         }
-        waters
+        let closed = waters.closed(grid, z, climate);
+        if closed.is_empty() {
+            return waters;
+        }
+        // All of a closed lake is an end: it may have more bottoms than one.
+        let mut ends = outlets.to_vec();
+        closed.iter().flat_map(|lake| &lake.cells).for_each(|&i| ends[i as usize] = true);
+        let mut kept = hollows(grid, z, &Drainage::of(grid, z, &ends).surface_m);
+        kept.retain(worth);
+        fill(grid, z, &under(&ends, &kept));
+        let way = Drainage::of(grid, z, &ends);
+        let lakes = open(hollows(grid, z, &way.surface_m)).into_iter().chain(closed).collect();
+        Self::gather(way, lakes, climate)
     }
 
-    fn gather(way: Drainage, lakes: impl FnOnce(&Drainage) -> Vec<Lake>, climate: &Climate) -> Self {
-        let mut lakes = lakes(&way);
+    fn gather(way: Drainage, mut lakes: Vec<Lake>, climate: &Climate) -> Self {
         // What comes to a lake comes from above: from itself or over its shore.
         let wet = way.accumulate(&climate.runoff_m3_s);
         lakes.iter_mut().for_each(|lake| lake.dry = lake.cells.iter().all(|&i| wet[i as usize] <= 0.0));
@@ -151,7 +159,13 @@ impl Waters {
 
     /// Basins by the outlet that water ends in, numbered from the largest, 1; 0 where `land` does not hold.
     pub fn basins(&self, land: impl Fn(usize) -> bool) -> Vec<u32> {
-        let outlet = self.way.basin();
+        let mut outlet = self.way.basin();
+        // A closed lake ends at each of its cells, and is one basin all the same.
+        for end in &mut outlet {
+            if let Some(lake) = self.lake_of[*end as usize].checked_sub(1) {
+                *end = self.lakes[lake as usize].bottom;
+            }
+        }
         let mut size = vec![0u32; outlet.len()];
         (0..outlet.len()).filter(|&i| land(i)).for_each(|i| size[outlet[i] as usize] += 1);
         let mut ranked: Vec<u32> = (0..outlet.len() as u32).filter(|&i| size[i as usize] > 0).collect();
@@ -160,6 +174,12 @@ impl Waters {
         ranked.iter().zip(1..).for_each(|(&i, id)| number[i as usize] = id);
         (0..outlet.len()).map(|i| if land(i) { number[outlet[i] as usize] } else { 0 }).collect()
     }
+}
+
+/// Hollows as lakes that stand at their brims.
+fn open(hollows: Vec<Hollow>) -> Vec<Lake> {
+    let lake = |h: Hollow| Lake { cells: h.cells, bottom: h.bottom, level_m: h.level_m, closed: false, dry: false };
+    hollows.into_iter().map(lake).collect()
 }
 
 /// The cells below a level that hang together with a bottom.

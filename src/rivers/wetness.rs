@@ -44,10 +44,11 @@ mod tests {
         for ring_m in [150.0, 300.0, 450.0] {
             let ring: Vec<f64> =
                 (0..index.len()).filter(|&i| (from_middle_m(i) - ring_m).abs() < 10.0).map(|i| index[i]).collect();
-            // What drains through a metre of a circle is half its radius. The steepest of eight ways is up to 7.6 % gentler than
-            // the cone, and parted water scatters by a fourth from cell to cell: a tenth of that for the mean of a ring.
+            // What drains through a metre of a circle is half its radius. A ring of cells that touch by sides or corners has
+            // π·√2/4 times fewer than metres, 0.105 in the logarithm; a cell's own half adds 0.03 at 15 cells; and the
+            // steepest of eight ways is up to 7.6 % gentler than the cone.
             let (mean, want) = (ring.iter().sum::<f64>() / ring.len() as f64, libm::log(0.5 * ring_m / slope));
-            assert!((mean - want).abs() < 0.1, "{ring_m}: {mean} {want}");
+            assert!((0.0..0.18).contains(&(mean - want)), "{ring_m}: {mean} {want}");
         }
     }
 }
