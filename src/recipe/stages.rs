@@ -13,10 +13,9 @@ use crate::{
         DropletsParams, HillslopeParams, HydraulicCellsParams, PipesParams, RainParticlesParams, StreamPowerParams,
         ThermalParams,
     },
-    process::{Placement, Process, ProcessError},
+    process::{Placement, Process, ProcessError, Shape},
     rivers::RiversParams,
     tectonics::PlatesParams,
-    terrain::Shape,
 };
 
 use super::schema;

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use upthrust::{
     grid::{Edges, Field, Grid},
-    process::{Context, Placement},
+    process::{Context, Placement, Shape},
     terrain::*,
     world::{Layer, World},
 };
