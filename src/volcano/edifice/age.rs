@@ -83,7 +83,7 @@ mod tests {
         for depth_m in [-300.0, 0.0, 2500.0, 5000.0] {
             let wear = Wear::after(7.0, 6000.0, depth_m, 350.0, 3.0).unwrap();
             let mut below = 0.0;
-            for h in (0..600).map(|i| 10.0 * i as f64) {
+            for h in (0..600).map(|i| 10.0 * i as f64 + 5.0) {
                 let (z, by) = wear.on(h);
                 assert!(z >= below - 1e-9 && z <= h, "{h}: {z} after {below}");
                 below = z;

@@ -8,8 +8,8 @@
 use super::{age::Wear, profile::Cone};
 use crate::noise::{Fbm, Key, Octaves, Sampler, smoothstep};
 
-/// Mean and standard deviation of the turbulence below, measured over 10⁶ places of 64 keys.
-pub(super) const TURBULENCE: [f64; 2] = [0.242, 0.117];
+/// Mean and standard deviation of the turbulence below, measured at 128,000 places.
+pub(super) const TURBULENCE: [f64; 2] = [0.247, 0.0908];
 /// Hurst exponent of the noise.
 const HURST: f64 = 0.75;
 /// Strength of the noise of twice the frequency over that of the first.

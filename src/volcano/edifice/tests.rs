@@ -125,6 +125,8 @@ fn chain(chain: Chain) -> VolcanoParams {
         at_km: Some([700.0, 700.0]),
         height_m: 9000.0,
         radius_km: Some(50.0),
+        noise: 0.0,
+        turbulence: 0.0,
         chain,
         ..VolcanoParams::default()
     }
