@@ -1,13 +1,15 @@
-//! What time does to a volcano that its plate has carried off its source: it sinks with the cooling floor, and what stands
-//! above the sea is worn down to it.
+//! What time does to a volcano that its plate has carried off its source: it sinks with the cooling floor, and what rain and
+//! waves reach is worn down to the depth where waves end.
 //!
 //! Sea floor sinks by `s·√t` (Parsons and Sclater 1977: 350 m in the first million years); a volcano's foot is held, so that its
-//! heights sink in proportion to what they have above it. Above the sea `dz/dt = −(z − sea)/w`. Both together turn islands
+//! heights sink in proportion to what they have above it. Above that depth `dz/dt = −(z − z_waves)/w`. Both together turn islands
 //! into banks and flat-topped seamounts. The height above the foot after `t` is a function of that before alone,
 //! monotonous, so it is worked out height by height.
 
 /// Pieces of time; sinking and wear follow each other in each.
 const PIECES: usize = 32;
+/// Depth to which waves wear a bank, m: tops of guyots were planed some tens of metres to a hundred below the sea.
+const WAVES_M: f64 = 80.0;
 /// Most of its height that a volcano sinks.
 const MOST: f64 = 0.9;
 
@@ -16,10 +18,10 @@ const MOST: f64 = 0.9;
 pub struct Wear {
     /// What each piece of time leaves of a height by sinking.
     sinks_to: [f64; PIECES],
-    /// What is left of heights above the sea after each piece.
+    /// What each piece of time leaves of heights above that of wear.
     left: f64,
-    /// Height above the foot to which it is worn, m.
-    sea_m: f64,
+    /// Height above the volcano's foot to which it is worn, m.
+    worn_to_m: f64,
 }
 
 impl Wear {
@@ -32,7 +34,11 @@ impl Wear {
         let sunk = (sinks_m * age_myr.sqrt() / height_m).min(MOST);
         let stands = |i: usize| 1.0 - sunk * (i as f64 / PIECES as f64).sqrt();
         let sinks_to = std::array::from_fn(|i| stands(i + 1) / stands(i));
-        Some(Self { sinks_to, left: libm::exp(-age_myr / PIECES as f64 / wear_myr), sea_m: depth_m.max(0.0) })
+        Some(Self {
+            sinks_to,
+            left: libm::exp(-age_myr / PIECES as f64 / wear_myr),
+            worn_to_m: (depth_m - WAVES_M).max(0.0),
+        })
     }
 
     /// What is left of a height above the foot, and its derivative by the height before.
@@ -42,8 +48,8 @@ impl Wear {
         for share in self.sinks_to {
             z *= share;
             by *= share;
-            if z > self.sea_m {
-                z = self.sea_m + (z - self.sea_m) * self.left;
+            if z > self.worn_to_m {
+                z = self.worn_to_m + (z - self.worn_to_m) * self.left;
                 by *= self.left;
             }
         }
@@ -61,8 +67,8 @@ mod tests {
         // 350·√4 = 700 m off the top, half of that off half the height.
         assert!((sinks.on(8000.0).0 - 7300.0).abs() < 1e-6 && (sinks.on(4000.0).0 - 3650.0).abs() < 1e-6);
         let wears = Wear::after(4.0, 8000.0, 5000.0, 0.0, 2.0).unwrap();
-        assert!((wears.on(8000.0).0 - (5000.0 + 3000.0 * (-2.0f64).exp())).abs() < 1e-6);
-        assert_eq!(wears.on(4999.0), (4999.0, 1.0));
+        assert!((wears.on(8000.0).0 - (4920.0 + 3080.0 * (-2.0f64).exp())).abs() < 1e-6);
+        assert_eq!(wears.on(4919.0), (4919.0, 1.0));
         assert!(Wear::after(0.0, 8000.0, 5000.0, 350.0, 3.0).is_none());
     }
 

@@ -43,19 +43,22 @@ pub struct VolcanoParams {
     /// Strength of sharp valleys in the flanks, likewise.
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1", "x-effect" = "deeper creases"))]
     pub turbulence: f64,
+    /// Hurst exponent of its noise: 1 is smooth, 0.2 rough.
+    #[schemars(range(min = 0.05, max = 1.2), extend("x-unit" = "1", "x-effect" = "smoother flanks"))]
+    pub hurst: f64,
     /// Another volcano of the same kind: its noise is another.
     #[schemars(range(min = 0, max = 1000000), extend("x-effect" = "another volcano of the same kind"))]
     pub variant: u32,
     /// Height of the foot where blend = "replace", "max" or "min": that of the sea floor; added to the ground with "add".
     #[schemars(range(min = -12000.0, max = 12000.0), extend("x-unit" = "m", "x-effect" = "lifts it and its surroundings"))]
     pub foot_m: f64,
-    /// Time since it was active: it sinks, and is worn down to the sea.
+    /// Time since it was active: it sinks, and is worn down into the sea.
     #[schemars(range(min = 0.0, max = 500.0), extend("x-unit" = "My", "x-effect" = "a lower, worn volcano"))]
     pub age_myr: f64,
     /// How much it sinks in its first million years; four times as long for twice as much.
     #[schemars(range(min = 0.0, max = 5000.0), extend("x-unit" = "m", "x-effect" = "old volcanoes drown sooner"))]
     pub sinks_m: f64,
-    /// Time in which what stands above the sea is worn to 37 %, and its crater filled likewise.
+    /// Time in which what rain and waves reach is worn to 37 %, and its crater filled likewise.
     #[schemars(range(min = 0.001, max = 1000.0), extend("x-unit" = "My", "x-effect" = "old volcanoes stay high longer"))]
     pub wear_myr: f64,
     /// Several volcanoes: each has its place, and otherwise the stage's own values unless it gives its own.
@@ -161,6 +164,7 @@ impl Default for VolcanoParams {
             noise: 0.08,
             noise_frequency: 3.0,
             turbulence: 0.08,
+            hurst: 0.8,
             variant: 0,
             foot_m: 0.0,
             age_myr: 0.0,

@@ -77,7 +77,12 @@ impl VolcanoParams {
         Edifice {
             at_m,
             cone: Cone { crater_height_m, ..cone },
-            rough: Roughness { noise: self.noise, turbulence: self.turbulence, frequency: self.noise_frequency },
+            rough: Roughness {
+                noise: self.noise,
+                turbulence: self.turbulence,
+                frequency: self.noise_frequency,
+                hurst: self.hurst,
+            },
             key: site.key.with(u64::from(self.variant)).with(number),
             age_yr: age_myr * 1e6,
             wear: Wear::after(age_myr, cone.height_m, depth_m, self.sinks_m, self.wear_myr),

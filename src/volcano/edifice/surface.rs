@@ -8,10 +8,8 @@
 use super::{age::Wear, profile::Cone};
 use crate::noise::{Fbm, Key, Octaves, Sampler, smoothstep};
 
-/// Mean and standard deviation of the turbulence below, measured at 128,000 places.
-pub(super) const TURBULENCE: [f64; 2] = [0.247, 0.0908];
-/// Hurst exponent of the noise.
-const HURST: f64 = 0.75;
+/// Mean and standard deviation of the absolute value of gradient noise, measured at 128,000 places.
+const FOLDED: [f64; 2] = [0.247, 0.176];
 /// Strength of the noise of twice the frequency over that of the first.
 const SECOND: f64 = 0.5;
 /// Exponent by which volcanoes join.
@@ -26,6 +24,18 @@ pub struct Roughness {
     pub turbulence: f64,
     /// Waves over a radius.
     pub frequency: f64,
+    /// Hurst exponent of both: 1 is smooth, 0.2 rough.
+    pub hurst: f64,
+}
+
+impl Roughness {
+    /// Mean and standard deviation of the turbulence. Octaves weigh `g^i` with `g = λ^(−H)`, and their sum is divided by that
+    /// of the weights: the mean is that of one, the deviation `√((1 − g)/(1 + g))` of it.
+    pub(super) fn turbulence(&self) -> [f64; 2] {
+        let gain = libm::pow(Fbm::default().lacunarity, -self.hurst);
+        let [mean, deviation] = FOLDED;
+        [mean, deviation * ((1.0 - gain) / (1.0 + gain)).sqrt()]
+    }
 }
 
 /// A volcano and its place.
@@ -56,6 +66,8 @@ struct Ready {
     edifice: Edifice,
     /// fBm at two frequencies, and what turbulence is made of.
     noises: [Octaves; 3],
+    /// Mean and standard deviation of the turbulence.
+    turbulence: [f64; 2],
 }
 
 impl Edifices {
@@ -63,42 +75,43 @@ impl Edifices {
     pub fn new(all: Vec<Edifice>, cell_m: f64) -> Self {
         let ready = |edifice: Edifice| {
             let wave_m = edifice.cone.radius_m / edifice.rough.frequency;
-            let noise = |name: &str, wave_m: f64| Fbm::new(wave_m, HURST).octaves(edifice.key.named(name), cell_m);
+            let noise = |name: &str, wave_m: f64| {
+                Fbm::new(wave_m, edifice.rough.hurst).octaves(edifice.key.named(name), cell_m)
+            };
             let noises = [noise("first", wave_m), noise("second", 0.5 * wave_m), noise("turbulence", wave_m)];
-            Ready { edifice, noises }
+            let turbulence = edifice.rough.turbulence();
+            Ready { edifice, noises, turbulence }
         };
         Self { all: all.into_iter().map(ready).collect() }
     }
 
     /// A reader for many places one after the other.
     pub fn reader(&self) -> Reader<'_> {
-        Reader {
-            all: self.all.iter().map(|ready| (&ready.edifice, ready.noises.each_ref().map(Octaves::sampler))).collect(),
-        }
+        Reader { all: self.all.iter().map(|ready| (ready, ready.noises.each_ref().map(Octaves::sampler))).collect() }
     }
 }
 
 /// Reads the surface of volcanoes.
 #[derive(Clone, Debug)]
 pub struct Reader<'a> {
-    all: Vec<(&'a Edifice, [Sampler<'a>; 3])>,
+    all: Vec<(&'a Ready, [Sampler<'a>; 3])>,
 }
 
 impl Reader<'_> {
     /// Height above the foot at a place, m.
     pub fn height(&mut self, at_m: [f64; 2]) -> f64 {
-        if let [(edifice, noises)] = self.all.as_mut_slice() {
-            return edifice.height(noises, at_m);
+        if let [(ready, noises)] = self.all.as_mut_slice() {
+            return ready.height(noises, at_m);
         }
-        let sum: f64 = self.all.iter_mut().map(|(edifice, noises)| edifice.height(noises, at_m).powi(JOIN)).sum();
+        let sum: f64 = self.all.iter_mut().map(|(ready, noises)| ready.height(noises, at_m).powi(JOIN)).sum();
         sum.sqrt().sqrt()
     }
 
     /// Height above the foot and its gradient. Turbulence has creases, where it takes one side's.
     pub fn gradient(&mut self, at_m: [f64; 2]) -> (f64, [f64; 2]) {
         let (mut sum, mut slope) = (0.0, [0.0; 2]);
-        for (edifice, noises) in &mut self.all {
-            let (z, g) = edifice.gradient(noises, at_m);
+        for (ready, noises) in &mut self.all {
+            let (z, g) = ready.gradient(noises, at_m);
             sum += z.powi(JOIN);
             let by = z.powi(JOIN - 1);
             slope = [slope[0] + by * g[0], slope[1] + by * g[1]];
@@ -109,26 +122,26 @@ impl Reader<'_> {
     }
 }
 
-impl Edifice {
+impl Ready {
     fn height(&self, noises: &mut [Sampler; 3], at_m: [f64; 2]) -> f64 {
-        let r_m = libm::hypot(at_m[0] - self.at_m[0], at_m[1] - self.at_m[1]);
-        let (shape, _) = self.cone.at(r_m);
+        let r_m = libm::hypot(at_m[0] - self.edifice.at_m[0], at_m[1] - self.edifice.at_m[1]);
+        let (shape, _) = self.edifice.cone.at(r_m);
         let faded = self.faded(r_m).0;
         let rough = if faded > 0.0 && shape > 0.0 { libm::exp(faded * self.noise(noises, at_m)) } else { 1.0 };
         let z = shape * rough;
-        self.wear.map_or(z, |wear| wear.on(z).0)
+        self.edifice.wear.map_or(z, |wear| wear.on(z).0)
     }
 
     fn gradient(&self, noises: &mut [Sampler; 3], at_m: [f64; 2]) -> (f64, [f64; 2]) {
-        let out = [at_m[0] - self.at_m[0], at_m[1] - self.at_m[1]];
+        let out = [at_m[0] - self.edifice.at_m[0], at_m[1] - self.edifice.at_m[1]];
         let r_m = libm::hypot(out[0], out[1]);
         let radial = if r_m > 0.0 { out.map(|d| d / r_m) } else { [0.0; 2] };
-        let (shape, fall) = self.cone.at(r_m);
+        let (shape, fall) = self.edifice.cone.at(r_m);
         let (faded, fades) = self.faded(r_m);
         let (noise, slope) = self.noise_and_slope(noises, at_m);
         let rough = libm::exp(faded * noise);
         let z = shape * rough;
-        let (worn, by) = self.wear.map_or((z, 1.0), |wear| wear.on(z));
+        let (worn, by) = self.edifice.wear.map_or((z, 1.0), |wear| wear.on(z));
         let along = |axis: usize| {
             by * rough * (fall * radial[axis] + shape * (fades * radial[axis] * noise + faded * slope[axis]))
         };
@@ -137,7 +150,7 @@ impl Edifice {
 
     /// How much of the noise is there, and its derivative.
     fn faded(&self, r_m: f64) -> (f64, f64) {
-        let (from, width) = (self.cone.radius_m, self.cone.reach_m() - self.cone.radius_m);
+        let (from, width) = (self.edifice.cone.radius_m, self.edifice.cone.reach_m() - self.edifice.cone.radius_m);
         if width <= 0.0 {
             return (f64::from(r_m < from), 0.0);
         }
@@ -146,13 +159,13 @@ impl Edifice {
     }
 
     fn noise(&self, [first, second, turbulence]: &mut [Sampler; 3], at_m: [f64; 2]) -> f64 {
-        let [mean, deviation] = TURBULENCE;
+        let [mean, deviation] = self.turbulence;
         let mut sum = 0.0;
-        if self.rough.noise > 0.0 {
-            sum += self.rough.noise * (first.value(at_m) + SECOND * second.value(at_m));
+        if self.edifice.rough.noise > 0.0 {
+            sum += self.edifice.rough.noise * (first.value(at_m) + SECOND * second.value(at_m));
         }
-        if self.rough.turbulence > 0.0 {
-            sum += self.rough.turbulence / deviation * (turbulence.turbulence(at_m) - mean);
+        if self.edifice.rough.turbulence > 0.0 {
+            sum += self.edifice.rough.turbulence / deviation * (turbulence.turbulence(at_m) - mean);
         }
         sum
     }
@@ -161,7 +174,10 @@ impl Edifice {
         let value = self.noise(noises, at_m);
         let [first, second, turbulence] = noises;
         let (a, b, c) = (first.gradient(at_m).1, second.gradient(at_m).1, turbulence.turbulence_gradient(at_m).1);
-        let slope = |i: usize| self.rough.noise * (a[i] + SECOND * b[i]) + self.rough.turbulence / TURBULENCE[1] * c[i];
+        let slope = |i: usize| {
+            self.edifice.rough.noise * (a[i] + SECOND * b[i])
+                + self.edifice.rough.turbulence / self.turbulence[1] * c[i]
+        };
         (value, [slope(0), slope(1)])
     }
 }
