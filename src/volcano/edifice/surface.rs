@@ -12,8 +12,6 @@ use crate::noise::{Fbm, Key, Octaves, Sampler, smoothstep};
 const FOLDED: [f64; 2] = [0.247, 0.176];
 /// Strength of the noise of twice the frequency over that of the first.
 const SECOND: f64 = 0.5;
-/// Exponent by which volcanoes join.
-const JOIN: i32 = 4;
 
 /// How rough a volcano is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,7 +101,7 @@ impl Reader<'_> {
         if let [(ready, noises)] = self.all.as_mut_slice() {
             return ready.height(noises, at_m);
         }
-        let sum: f64 = self.all.iter_mut().map(|(ready, noises)| ready.height(noises, at_m).powi(JOIN)).sum();
+        let sum: f64 = self.all.iter_mut().map(|(ready, noises)| fourth(ready.height(noises, at_m))).sum();
         sum.sqrt().sqrt()
     }
 
@@ -112,14 +110,18 @@ impl Reader<'_> {
         let (mut sum, mut slope) = (0.0, [0.0; 2]);
         for (ready, noises) in &mut self.all {
             let (z, g) = ready.gradient(noises, at_m);
-            sum += z.powi(JOIN);
-            let by = z.powi(JOIN - 1);
+            sum += fourth(z);
+            let by = z * z * z;
             slope = [slope[0] + by * g[0], slope[1] + by * g[1]];
         }
         let z = sum.sqrt().sqrt();
-        let by = if z > 0.0 { 1.0 / z.powi(JOIN - 1) } else { 0.0 };
+        let by = if z > 0.0 { 1.0 / (z * z * z) } else { 0.0 };
         (z, slope.map(|s| s * by))
     }
+}
+
+fn fourth(z: f64) -> f64 {
+    z * z * (z * z)
 }
 
 impl Ready {
