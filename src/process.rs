@@ -1,6 +1,10 @@
 //! What every solver looks like from outside: it steps a world, says how far it is, and can be stopped and continued
 //! between any two steps.
 
+mod shape;
+
+pub use shape::Shape;
+
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::{Deserialize, Serialize};

@@ -5,6 +5,8 @@ use crate::world::{Column, Table, Values, World};
 
 /// Tables whose rows reach off any map: plates are larger than windows.
 const UNCUT: [&str; 2] = ["plates", "plate_outlines"];
+/// The columns that say where a row lies, and how many metres their unit has.
+const PLACES: [([&str; 2], f64); 2] = [(["x_km", "y_km"], 1e3), (["x_m", "y_m"], 1.0)];
 /// The column that says to which line a row belongs.
 const RIVER: &str = "river";
 /// The column that says to which ring, or group of them, a row belongs.
@@ -17,10 +19,9 @@ const NAMES: [&str; 3] = [RIVER, "order", "into_id"];
 pub(super) fn carry(world: &mut World, window: &Window) {
     let tables: Vec<Table> = world.tables().cloned().collect();
     for mut table in tables {
-        let moved =
-            ["x_km", "y_km"].iter().zip(window.corner_m).all(|(name, corner_m)| shift(&mut table, name, corner_m));
-        if !moved {
-            continue;
+        let Some((names, unit_m)) = axes(&table) else { continue };
+        for (name, corner_m) in names.iter().zip(window.corner_m) {
+            shift(&mut table, name, corner_m * (1.0 / unit_m));
         }
         let table = if UNCUT.contains(&table.name.as_str()) {
             table
@@ -33,12 +34,17 @@ pub(super) fn carry(world: &mut World, window: &Window) {
     }
 }
 
-/// Takes a corner off a column of places; whether there is such a column.
-fn shift(table: &mut Table, name: &str, corner_m: f64) -> bool {
+/// The columns of a table's places and their unit in metres, if it has places.
+fn axes(table: &Table) -> Option<([&'static str; 2], f64)> {
+    PLACES.into_iter().find(|(names, _)| names.iter().all(|name| table.numbers(name).is_some()))
+}
+
+/// Takes a corner off a column of places.
+fn shift(table: &mut Table, name: &str, corner: f64) {
     let column = table.columns.iter_mut().find(|column| column.name == name);
-    let Some(Column { values: Values::Number(values), .. }) = column else { return false };
-    values.iter_mut().for_each(|km| *km -= corner_m * 1e-3);
-    true
+    if let Some(Column { values: Values::Number(values), .. }) = column {
+        values.iter_mut().for_each(|at| *at -= corner);
+    }
 }
 
 /// The rows whose places lie within; of lakes all rows or none.
@@ -65,8 +71,9 @@ fn kept(table: Table, window: &Window) -> Table {
 }
 
 fn places(table: &Table) -> Vec<[f64; 2]> {
-    let [x_km, y_km] = ["x_km", "y_km"].map(|name| table.numbers(name).unwrap_or(&[]));
-    x_km.iter().zip(y_km).map(|(x, y)| [x * 1e3, y * 1e3]).collect()
+    let Some((names, unit_m)) = axes(table) else { return Vec::new() };
+    let [x, y] = names.map(|name| table.numbers(name).unwrap_or(&[]));
+    x.iter().zip(y).map(|(x, y)| [x * unit_m, y * unit_m]).collect()
 }
 
 /// The shares of a way, from and to, between which it lies within the window (Liang and Barsky).
@@ -162,7 +169,10 @@ fn of_pieces(column: &Column, pieces: &[Piece]) -> Values {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::{Edges, Grid};
+    use crate::{
+        grid::{Edges, Grid},
+        world::Vent,
+    };
 
     #[test]
     fn rivers_end_at_the_rim_and_come_back_as_others() {
@@ -205,16 +215,19 @@ mod tests {
         let points = |name: &str| {
             Table::new(name).number("x_km", "km", vec![10.0, 90.0, 130.0]).number("y_km", "km", vec![60.0; 3])
         };
-        world.set_table(points("vents").text("name", ["a", "b", "c"].map(str::to_owned).to_vec()));
+        world.set_table(points("peaks").text("name", ["a", "b", "c"].map(str::to_owned).to_vec()));
+        let vents = [10e3, 90e3].map(|x| Vent { at_m: [x, 60e3], radius_m: 300.0, age_yr: 0.0 });
+        world.add_vents(&vents);
         world.set_table(points("plates"));
         world.set_table(points("lake_outlines").number("lake", "1", vec![1.0, 2.0, 2.0]));
         world.set_table(Table::new("sums").number("a", "1", vec![1.0]));
         carry(&mut world, &Window { corner_m: [80e3, 50e3], grid: Grid::new(40, 40, 40e3, Edges::Open) });
         let table = |name: &str| world.table(name).unwrap().numbers("x_km").unwrap().to_vec();
-        assert_eq!((table("vents"), table("plates")), (vec![10.0], vec![-70.0, 10.0, 50.0]));
+        assert_eq!((table("peaks"), table("plates")), (vec![10.0], vec![-70.0, 10.0, 50.0]));
         assert_eq!(table("lake_outlines"), [10.0, 50.0]);
-        assert_eq!(world.table("vents").unwrap().words("name").unwrap(), ["b"]);
-        assert_eq!(world.table("vents").unwrap().numbers("y_km").unwrap(), [10.0]);
+        assert_eq!(world.table("peaks").unwrap().words("name").unwrap(), ["b"]);
+        assert_eq!(world.table("peaks").unwrap().numbers("y_km").unwrap(), [10.0]);
+        assert_eq!(world.vents(), [Vent { at_m: [10e3, 10e3], ..vents[1] }]);
         assert_eq!(world.table("sums").unwrap().rows(), 1);
     }
 }

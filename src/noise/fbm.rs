@@ -224,6 +224,18 @@ impl Sampler<'_> {
         self.sum.total
     }
 
+    /// The octaves, their noises, −1 to 1, and the slopes of these per metre, without weight or share.
+    pub(super) fn octaves_and_slopes(&mut self, at_m: [f64; 2]) -> impl Iterator<Item = (&Octave, (f64, [f64; 2]))> {
+        let basis = self.sum.basis;
+        self.sum.octaves.iter().zip(&mut self.squares).map(move |(octave, square)| {
+            let noise = match basis {
+                Basis::Gradient => octave.turned(square.read(octave.seed, octave.place(at_m))),
+                other => octave.noise_and_slope(other, at_m),
+            };
+            (octave, noise)
+        })
+    }
+
     /// The octaves and their noises, −1 to 1, without weight or share.
     #[inline(always)]
     pub(super) fn octaves(&mut self, at_m: [f64; 2]) -> impl Iterator<Item = (&Octave, f64)> {

@@ -48,6 +48,16 @@ const ALL: &[Preset] = presets! {
     "river-source"
     "rainstorm"
     "volcanic-slope"
+    "volcanic-island"
+    "small-islands"
+    "compact-island"
+    "big-crater"
+    "large-volcano"
+    "close-up"
+    "no-water"
+    "spiky"
+    "raymarched-archipelago"
+    "hotspot-chain"
 };
 
 /// Every preset.

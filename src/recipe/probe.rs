@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     grid::Field,
-    process::{Context, Process, ProcessError, State, Step},
-    terrain::Shape,
+    process::{Context, Process, ProcessError, Shape, State, Step},
     world::{Layer, Matter, World},
 };
 

@@ -13,10 +13,10 @@ use crate::{
         DropletsParams, HillslopeParams, HydraulicCellsParams, PipesParams, RainParticlesParams, StreamPowerParams,
         ThermalParams,
     },
-    process::{Placement, Process, ProcessError},
+    process::{Placement, Process, ProcessError, Shape},
     rivers::RiversParams,
     tectonics::PlatesParams,
-    terrain::Shape,
+    volcano::{IslandParams, VolcanoParams},
 };
 
 use super::schema;
@@ -122,6 +122,13 @@ fn table() -> Vec<StageKind> {
         ground::<t::RmpPeakParams>("rmp_peak", "Peak", "A mountain of many random Voronoi cells about a point."),
         ground::<t::RmpRidgeParams>("rmp_ridge", "Ridge", "A range of many random Voronoi cells along a drawn line."),
         ground::<t::RmpGraphParams>("rmp_graph", "Line-cut massif", "A massif of faces between random lines."),
+        ground::<IslandParams>("island", "Island", "A cone with a flat core, and islets around it."),
+        StageKind {
+            blends: true,
+            ..row("volcano", "Volcano", "Volcanoes with craters: one, several, a chain behind a hot spot, or along arcs.", |volcano: VolcanoParams, setting| {
+                Ok(volcano.process(setting.placement))
+            })
+        },
         row("climate", "Climate", "Wind, rain, temperature, snow line, and what grows.", |climate: ClimateParams, setting| {
             Ok(climate.process(setting.placement))
         }),

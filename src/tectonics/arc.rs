@@ -25,6 +25,14 @@ pub struct Arc {
     pub spacing_m: f64,
 }
 
+impl Arc {
+    /// Where a stretch has its arc, if one plate sinks there.
+    pub fn line(&self, stretch: &Stretch) -> Option<[DVec2; 2]> {
+        let inland_m = stretch.inland * self.offset_m;
+        (stretch.meeting == Meeting::Subduction).then(|| stretch.ends_m.map(|end| end + inland_m))
+    }
+}
+
 /// The height each cell gains where a stretch raises volcanoes by `height_m` at their peaks.
 pub fn cones(
     plate: &Plate,
@@ -35,10 +43,7 @@ pub fn cones(
     site_key: Key,
     brush: &mut Brush,
 ) -> Vec<Share> {
-    if stretch.meeting != Meeting::Subduction {
-        return Vec::new();
-    }
-    let line = stretch.ends_m.map(|end| end + stretch.inland * arc.offset_m);
+    let Some(line) = arc.line(stretch) else { return Vec::new() };
     let half_width_m = (0.12 * arc.spacing_m).max(1.2 * plate.frame.cell_m);
     let density = rmp::density_for_half_width(half_width_m);
     let mut gains = Vec::new();

@@ -385,6 +385,17 @@ impl Simulation {
         got * area
     }
 
+    /// Points along the arcs of now, an eighth of the distance between volcanoes apart: the stretch and the place of each.
+    pub fn arc_points(&self) -> Vec<(&Stretch, DVec2)> {
+        let arc = &self.rules.arc;
+        let points = |stretch| {
+            let line = arc.line(stretch).unwrap_or_default();
+            let pieces = (line[0].distance(line[1]) / (arc.spacing_m / 8.0)).ceil() as usize;
+            (0..pieces).map(move |i| (stretch, line[0].lerp(line[1], (i as f64 + 0.5) / pieces as f64)))
+        };
+        self.stretches.iter().flat_map(points).collect()
+    }
+
     /// Grows the volcanoes of all arcs.
     fn erupt(&mut self, step_myr: f64) {
         let key = self.key.named("erupt").with(self.step);

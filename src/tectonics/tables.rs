@@ -79,6 +79,17 @@ pub fn convergence(run: &Simulation) -> Table {
         .number("closed_km", "km", numbers(&|i| run.closings[i].closed_m * 1e-3))
 }
 
+/// The table `arcs`: points along the lines where volcanoes stand behind a trench, and how fast the plates close there.
+pub fn arcs(run: &Simulation, warp: &Warp) -> Table {
+    let points: Vec<_> = run.arc_points().into_iter().map(|(stretch, at_m)| (stretch, warp.shown_at(at_m))).collect();
+    let numbers = |f: &dyn Fn(usize) -> f64| (0..points.len()).map(f).collect::<Vec<_>>();
+    Table::new("arcs")
+        .number("plate", "1", numbers(&|i| points[i].0.over as f64))
+        .number("x_km", "km", numbers(&|i| points[i].1.x * 1e-3))
+        .number("y_km", "km", numbers(&|i| points[i].1.y * 1e-3))
+        .number("closing_mm_per_yr", "mm/yr", numbers(&|i| points[i].0.closing_m_per_yr * 1e3))
+}
+
 /// The table `plate_outlines`: the rigid outlines where they are now, as the map shows them.
 pub fn outlines(run: &Simulation, warp: &Warp, bodies: &[Vec<DVec2>]) -> Table {
     const PIECES: usize = 12;

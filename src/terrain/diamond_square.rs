@@ -10,11 +10,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, longer_side_m};
+use super::longer_side_m;
 use crate::{
     grid::{Field, for_each_row},
     noise::Key,
-    process::{Context, ProcessError},
+    process::{Context, ProcessError, Shape},
 };
 
 /// Land by repeated halving: diamond-square.

@@ -10,11 +10,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, length_m};
+use super::length_m;
 use crate::{
     grid::{Field, Grid, for_each_row},
     noise::Key,
-    process::{Context, ProcessError},
+    process::{Context, ProcessError, Shape},
 };
 
 /// Blocks raised and lowered along straight faults.

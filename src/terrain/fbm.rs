@@ -5,11 +5,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, length_m, sampled};
+use super::{length_m, sampled};
 use crate::{
     grid::Field,
     noise::{Basis, Fbm},
-    process::{Context, ProcessError},
+    process::{Context, ProcessError, Shape},
 };
 
 /// Fractal noise, equally rough everywhere.

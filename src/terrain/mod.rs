@@ -1,8 +1,8 @@
 //! Base shapes: land to start from, or to lay over what is there. Fractal noise, warping, terraces, midpoint
 //! displacement, faults, and mountains by repeated magnification and probing (RMP).
 //!
-//! Every stage is one file: its parameters and how they become heights. This module runs them, blends the result into the
-//! bedrock and books it. Nothing here moves matter or takes time.
+//! Every stage is one file: its parameters and how they become heights. [`crate::process::Shape`] runs them, blends the result
+//! into the bedrock and books it. Nothing here moves matter or takes time.
 //!
 //! All lengths are in metres or kilometres and all random numbers are keyed by place or count, never by the grid: another
 //! size refines the land and does not change it. Lengths that are not given follow the map's longer side.
@@ -31,68 +31,7 @@ pub use warp::WarpParams;
 use crate::{
     grid::{Field, Grid, for_each_row},
     noise::{Octaves, Sampler},
-    process::{Context, Placement, Process, ProcessError, State, Step},
-    world::{Layer, World},
 };
-
-/// A base shape: parameters that become heights in one go.
-pub trait Shape: Send + 'static {
-    /// Layers that must be there before.
-    const READS: &'static [Layer] = &[];
-
-    /// Whether the parameters go together with a map of this grid.
-    fn fit(&self, _grid: &Grid) -> Result<(), ProcessError> {
-        Ok(())
-    }
-
-    /// The shape's heights over the map, m. `ground` is the bedrock as it stands; only shapes that rework it look at more
-    /// than its grid.
-    fn heights(&self, ground: &Field<f32>, context: &Context) -> Result<Field<f32>, ProcessError>;
-
-    /// The process that puts these heights into a world.
-    fn process(self, placement: Placement) -> Box<dyn Process>
-    where
-        Self: Sized,
-    {
-        Box::new(Shaping { shape: self, placement })
-    }
-}
-
-struct Shaping<S> {
-    shape: S,
-    placement: Placement,
-}
-
-impl<S: Shape> Process for Shaping<S> {
-    fn reads(&self) -> &'static [Layer] {
-        S::READS
-    }
-
-    fn writes(&self) -> &'static [Layer] {
-        &[Layer::Bedrock]
-    }
-
-    fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
-        self.shape.fit(grid)
-    }
-
-    fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
-        context.check()?;
-        let ground = self.placement.over(world)?;
-        let heights = self.shape.heights(&ground.base, context)?;
-        context.check()?;
-        ground.put(&heights, world, context);
-        Ok(Step::WHOLE)
-    }
-
-    fn save(&self) -> State {
-        State::default()
-    }
-
-    fn restore(&mut self, _state: State, _context: &Context) -> Result<(), ProcessError> {
-        Ok(())
-    }
-}
 
 /// The map's longer side, m.
 fn longer_side_m(grid: &Grid) -> f64 {

@@ -6,11 +6,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, length_m, longer_side_m, sampled};
+use super::{length_m, longer_side_m, sampled};
 use crate::{
     grid::{Field, Grid},
     noise::{Fbm, Key, Sampler},
-    process::{Context, ProcessError},
+    process::{Context, ProcessError, Shape},
 };
 
 /// How the octaves are joined.

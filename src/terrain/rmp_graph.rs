@@ -10,11 +10,11 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, longer_side_m, place_m};
+use super::{longer_side_m, place_m};
 use crate::{
     grid::{Field, Grid},
     noise::{Fbm, Key},
-    process::{Context, ProcessError},
+    process::{Context, ProcessError, Shape},
     rmp::{Arrangement, Order, Raised, raise},
 };
 

@@ -7,10 +7,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, length_m, massif::Massif, place_m};
+use super::{length_m, massif::Massif, place_m};
 use crate::{
     grid::{Field, Grid},
-    process::{Context, ProcessError},
+    process::{Context, ProcessError, Shape},
 };
 
 /// A mountain of random Voronoi cells.

@@ -7,11 +7,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, length_m, massif::Massif};
+use super::{length_m, massif::Massif};
 use crate::{
     grid::{Field, Grid},
     noise::{Fbm, Key},
-    process::{Context, ProcessError},
+    process::{Context, ProcessError, Shape},
 };
 
 /// A range of random Voronoi cells along a line.

@@ -6,11 +6,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, length_m, sampled};
+use super::{length_m, sampled};
 use crate::{
     grid::Field,
     noise::Fbm,
-    process::{Context, ProcessError},
+    process::{Context, ProcessError, Shape},
     world::Layer,
 };
 

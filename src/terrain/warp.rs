@@ -8,11 +8,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Shape, length_m};
+use super::length_m;
 use crate::{
     grid::{Edges, Field, Grid, cubic, for_each_row},
     noise::{Fbm, Octaves},
-    process::{Context, ProcessError},
+    process::{Context, ProcessError, Shape},
     world::Layer,
 };
 

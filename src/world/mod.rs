@@ -9,6 +9,7 @@ mod mask;
 mod picture;
 pub mod store;
 mod table;
+mod vents;
 
 pub use catalogue::{Kind, Layer, Palette, Spec};
 pub use forcing::Inflow;
@@ -16,6 +17,7 @@ pub use ledger::{Account, Ledger, Matter};
 pub use mask::{Mask, MaskError};
 pub use picture::{PictureError, open_picture, sample};
 pub use table::{Column, Table, Values};
+pub use vents::Vent;
 
 use std::collections::BTreeMap;
 

@@ -5,8 +5,9 @@ use std::sync::atomic::AtomicBool;
 
 use upthrust::{
     grid::{Edges, Field, Grid},
-    process::{Context, Placement},
+    process::{Blend, Context, Placement, Shape},
     terrain::*,
+    volcano::{IslandParams, VolcanoParams},
     world::{Layer, World},
 };
 
@@ -35,12 +36,16 @@ fn put<S: Shape>(shape: S) -> Box<dyn upthrust::process::Process> {
     shape.process(Placement::default())
 }
 
+fn on_top(volcano: VolcanoParams) -> Box<dyn upthrust::process::Process> {
+    volcano.process(Placement { blend: Blend::Add, mask: None })
+}
+
 fn form(form: Form) -> MultifractalParams {
     MultifractalParams { form, base_m: -1500.0, ..MultifractalParams::default() }
 }
 
 /// Every stage, sea somewhere in the middle of its heights.
-const ALL: [(&str, Stages, f64); 13] = [
+const ALL: [(&str, Stages, f64); 15] = [
     ("fbm", || vec![put(FbmParams::default())], 0.0),
     ("fbm-rough", || vec![put(FbmParams { hurst: 0.2, ..FbmParams::default() })], 0.0),
     ("hybrid", || vec![put(form(Form::Hybrid))], 0.0),
@@ -54,6 +59,8 @@ const ALL: [(&str, Stages, f64); 13] = [
     ("rmp_peak", || vec![put(RmpPeakParams::default())], 500.0),
     ("rmp_ridge", || vec![put(RmpRidgeParams::default())], 500.0),
     ("rmp_graph", || vec![put(RmpGraphParams::default())], 500.0),
+    ("island", || vec![put(IslandParams::default())], 0.0),
+    ("volcano", || vec![put(FbmParams::default()), on_top(VolcanoParams::default())], 0.0),
 ];
 
 fn averaged(field: &Field<f32>, size: usize) -> Vec<f64> {

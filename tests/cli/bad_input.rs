@@ -163,4 +163,9 @@ fn what_does_not_go_together_is_found_before_the_run() {
     refused("kind = \"plates\"\nduration_myr = 50", "'plates': plates would drift");
     refused(&format!("{plates}\ncontinents = \"r.toml\""), "'plates': continents: ");
     refused(&format!("{plates}\nmap = \"r.toml\""), "'plates': map: ");
+    refused("kind = \"volcano\"\nat_km = [300, 50]", "'volcano': at_km = [300, 50] is so far off the map");
+    refused("kind = \"volcano\"\ncrater_radius_m = 20000", "'volcano': a crater of 20000 m is as wide as");
+    refused("kind = \"volcano\"\nheight_m = 0\ncrater_height_m = 1", "'volcano': the crater's floor at 1 m is higher");
+    refused("kind = \"volcano\"\nplace = \"arc\"", "'volcano' needs the layer 'plate_id'");
+    refused("kind = \"island\"\nislands = [{ at_km = [300, 50] }]", "'island': islands[1]: at_km = [300, 50]");
 }

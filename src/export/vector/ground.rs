@@ -149,13 +149,12 @@ impl Ground {
 
     /// Vents, where the world has any.
     pub fn volcanoes(&self, world: &World) -> Vec<Spot> {
-        let Some(table) = world.table("vents") else { return Vec::new() };
-        let (Some(x), Some(y)) = (table.numbers("x_km"), table.numbers("y_km")) else { return Vec::new() };
         let grid = self.height.grid;
         let [w, h] = grid.extent_m();
-        x.iter()
-            .zip(y)
-            .map(|(x, y)| [x * 1e3, y * 1e3])
+        world
+            .vents()
+            .into_iter()
+            .map(|vent| vent.at_m)
             .filter_map(|at_m| {
                 let local = [at_m[0] - self.shift[0], at_m[1] - self.shift[1]];
                 let on = local[0] >= 0.0 && local[1] >= 0.0 && local[0] <= w && local[1] <= h;

@@ -134,6 +134,10 @@ fn arcs_stand_inland_of_the_trench_where_they_should() {
         let cones = inland_profile(&run, |rock| rock.edifice_m);
         // About 40 sites, each within a quarter of a spacing of the line: their mean is good to 1.4 km.
         assert!((mean_place_m(&cones) - arc_m).abs() < CELL_M, "{arc_m}: volcanoes at {}", mean_place_m(&cones));
+        // The line that the table `arcs` shows is that of the last step, at most a cell on from where it raised them.
+        let trench_m = run.plates[1].pose.to_map(DVec2::new(-8.0 * 50e3, 0.0)).x;
+        let points = run.arc_points();
+        assert!(points.len() > 40 && points.iter().all(|(_, at)| (at.x - trench_m - arc_m).abs() < 2.0 * CELL_M));
         // A cone's Voronoi cell seldom reaches farther than three of its half widths from its site.
         let reach_m = spacing_m / 4.0 + CELL_M + 3.0 * 0.12 * spacing_m;
         let outside: f64 =
