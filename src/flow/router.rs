@@ -37,6 +37,8 @@ struct Strip {
 pub struct Router {
     compass: Compass,
     way: Vec<u8>,
+    /// One over what a diagonal step counts as, in cells: a row that holds for all rows, or a value for each cell.
+    corner: Vec<f64>,
     /// The steps to each cell's donors, a bit for each; in [`Router::put_in_order`], to those that have yet to give.
     donors: Vec<u8>,
     strip_cells: usize,
@@ -53,6 +55,7 @@ impl Router {
         Self {
             compass: Compass::new(grid),
             way: vec![ROOT; grid.cells()],
+            corner: vec![std::f64::consts::FRAC_1_SQRT_2; grid.width],
             donors: vec![0; grid.cells()],
             strip_cells: (STRIP_ROWS * grid.width).max(1),
             strips: (0..strips).map(|_| Strip::default()).collect(),
@@ -61,11 +64,27 @@ impl Router {
         }
     }
 
+    /// The same, with a chance among the eight ways that makes them fair: where a diagonal step counts as `2 - u` cells, with
+    /// `u` of each cell uniform from 0 to 1, water on a plane runs down the plane on the mean, whichever way that faces, and
+    /// neighbours meet that would run side by side (Rho8; Fairfield and Leymarie 1991). `chance` gives `u` by cell, and
+    /// holds for as long as the router does, so that valleys can settle.
+    pub fn fair(grid: Grid, chance: impl Fn(usize, usize) -> f64 + Sync) -> Self {
+        let mut corner = vec![0.0; grid.cells()];
+        for_each_row(&mut corner, grid.width, |y, row| {
+            row.iter_mut().enumerate().for_each(|(x, corner)| *corner = 1.0 / (2.0 - chance(x, y)));
+        });
+        Self { corner, ..Self::new(grid) }
+    }
+
     /// Routes a surface to its outlets, of which there has to be one: each cell to the neighbour that lies steepest
     /// below it, out of a depression by its lowest pass. Ties go to the neighbour that comes first in [`STEPS`].
     pub fn route(&mut self, height_m: &[f64], outlet: &[bool]) {
-        let compass = self.compass;
-        for_each_row(&mut self.way, compass.grid.width, |y, row| find_ways(&compass, height_m, outlet, y, row));
+        let (compass, corner) = (self.compass, &self.corner);
+        let width = compass.grid.width;
+        for_each_row(&mut self.way, width, |y, row| {
+            let corner = if corner.len() == width { corner } else { &corner[y * width..][..width] };
+            find_ways(&compass, [height_m, corner], outlet, y, row);
+        });
         let way = &self.way;
         for_each_row(&mut self.donors, compass.grid.width, |y, row| find_donors(&compass, way, y, row));
         self.spill.drain(height_m, Forest { compass, way: &mut self.way, donors: &mut self.donors });
@@ -215,16 +234,16 @@ fn rows_beside<T>(grid: Grid, data: &[T], y: usize) -> Option<(&[T], &[T], &[T])
     inside.then(|| (row(grid.row(y, -1)), row(y), row(grid.row(y, 1))))
 }
 
-fn find_ways(compass: &Compass, height_m: &[f64], outlet: &[bool], y: usize, out: &mut [u8]) {
+fn find_ways(compass: &Compass, [height_m, corner]: [&[f64]; 2], outlet: &[bool], y: usize, out: &mut [u8]) {
     let width = compass.grid.width;
     let at_rim = |x: usize| {
         let i = y * width + x;
         let around = compass.around(i).map(|(way, j)| (way, height_m[j]));
-        steepest(height_m[i], around)
+        steepest(height_m[i], corner[x], around)
     };
     match rows_beside(compass.grid, height_m, y) {
         Some((north, row, south)) if width > 2 => {
-            find_ways_inside([north, row, south], out);
+            find_ways_inside([north, row, south], corner, out);
             out[0] = at_rim(0);
             out[width - 1] = at_rim(width - 1);
         }
@@ -237,38 +256,28 @@ fn find_ways(compass: &Compass, height_m: &[f64], outlet: &[bool], y: usize, out
 
 /// The ways of a row but for its ends; the rows are the one to the north, its own, and the one to the south.
 #[multiversion(targets("x86_64+avx2"))]
-fn find_ways_inside(rows: [&[f64]; 3], out: &mut [u8]) {
+fn find_ways_inside(rows: [&[f64]; 3], corner: &[f64], out: &mut [u8]) {
     let inside = out.len() - 2;
+    let corner = &corner[1..][..inside];
     let around = STEPS.map(|(dx, dy)| &rows[(1 + dy) as usize][(1 + dx) as usize..][..inside]);
     for (x, (out, &z)) in out[1..][..inside].iter_mut().zip(&rows[1][1..]).enumerate() {
-        *out = steepest(z, (0..8u8).zip(around.map(|row| row[x])));
+        *out = steepest(z, corner[x], (0..8u8).zip(around.map(|row| row[x])));
     }
 }
 
-/// The way of the steepest drop.
+/// The way of the steepest drop; `corner` is one over what a diagonal step counts as, in cells.
 #[inline(always)]
-fn steepest(z: f64, around: impl Iterator<Item = (u8, f64)>) -> u8 {
+fn steepest(z: f64, corner: f64, around: impl Iterator<Item = (u8, f64)>) -> u8 {
     // As wide as the heights, so that the loops over cells become loops over vectors.
     let (mut steepest, mut way) = (0.0, PIT as u64);
     for (step, below) in around {
-        let drop = (z - below) * CLOSENESS[step as usize];
+        let drop = if LENGTHS[step as usize] == 1.0 { z - below } else { (z - below) * corner };
         // Written as two selections, which need no jump.
         way = if drop > steepest { step as u64 } else { way };
         steepest = if drop > steepest { drop } else { steepest };
     }
     way as u8
 }
-
-/// One over each of [`LENGTHS`].
-const CLOSENESS: [f64; 8] = {
-    let mut closeness = [1.0; 8];
-    let mut way = 0;
-    while way < 8 {
-        closeness[way] = 1.0 / LENGTHS[way];
-        way += 1;
-    }
-    closeness
-};
 
 /// The bit that a receiver has for a donor whose way is `way`.
 fn donor_bit(way: u8) -> u8 {
@@ -323,6 +332,47 @@ impl Forest<'_> {
         while steps != 0 {
             f(self.compass.to(cell, steps.trailing_zeros() as u8));
             steps &= steps - 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn with_a_chance_water_runs_down_a_plane_whichever_way_it_faces() {
+        let grid = Grid { width: 400, height: 400, cell_m: 10.0, edges: Edges::Open };
+        // A hash of the place, uniform from 0 to 1.
+        let chance = |x: usize, y: usize| {
+            let h = (x as u64 * 0x9E37_79B9_7F4A_7C15) ^ (y as u64 * 0xC2B2_AE3D_27D4_EB4F);
+            let h = (h ^ h >> 31).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            (h >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let rim = |i: usize| {
+            let (x, y) = grid.cell_of(i);
+            x == 0 || y == 0 || x == 399 || y == 399
+        };
+        let outlet: Vec<bool> = (0..grid.cells()).map(rim).collect();
+        for tilt in [0.0, 0.2, 0.5, 0.9, 1.0] {
+            let plane: Vec<f64> =
+                (0..grid.cells()).map(|i| grid.cell_of(i)).map(|(x, y)| 1e4 - (x as f64 + tilt * y as f64)).collect();
+            let steps = 200;
+            // How far south water comes that goes so many cells east, from several places: a line of fall comes `tilt` a step.
+            let south = |router: &mut Router| -> Vec<f64> {
+                router.route(&plane, &outlet);
+                let run = |begin: usize| (0..steps).fold(begin, |i, _| router.receiver(i));
+                (0..19).map(|k| (run(grid.index(5, 5 + 10 * k)) / 400) as f64 - (5 + 10 * k) as f64).collect()
+            };
+            let fair = south(&mut Router::fair(grid, chance));
+            let mean = fair.iter().sum::<f64>() / fair.len() as f64;
+            // A sum of independent choices, five standard deviations; what has met goes on together.
+            let spread = (steps as f64 * tilt * (1.0 - tilt)).sqrt();
+            assert!((mean - tilt * steps as f64).abs() <= 5.0 * spread, "{tilt}: {mean}");
+            if tilt == 0.2 {
+                // The eight ways alone follow the axis.
+                assert!(south(&mut Router::new(grid)).iter().all(|&south| south == 0.0));
+            }
         }
     }
 }

@@ -121,11 +121,17 @@ pub struct Carver {
 }
 
 impl Carver {
-    /// A solver over `grid`.
+    /// A solver over `grid`, its water down the steepest of eight ways.
     pub fn new(grid: Grid) -> Self {
+        Self::routed(Router::new(grid))
+    }
+
+    /// A solver over the raster of a router, which says how water chooses its way.
+    pub fn routed(router: Router) -> Self {
+        let grid = router.grid();
         let zeros = || vec![0.0; grid.cells()];
         Self {
-            router: Router::new(grid),
+            router,
             base: BaseLevel::default(),
             ratio: zeros(),
             raised_m: zeros(),

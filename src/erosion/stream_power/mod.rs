@@ -39,6 +39,18 @@ pub enum Rim {
     Fixed,
 }
 
+/// How water chooses among the eight neighbours of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Routing {
+    /// The steepest way down: on even slopes valleys keep to the eight directions of the raster.
+    #[default]
+    Steepest,
+    /// Between the two ways about the line of fall by a chance that each cell keeps, so that valleys run as the slope does
+    /// and meet (Fairfield and Leymarie 1991).
+    Rho8,
+}
+
 /// Rivers cut, carry and lay down over geologic time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -76,6 +88,9 @@ pub struct StreamPowerParams {
     /// Catchment at which channels begin; where it is smaller, slopes creep and slide, but hardly any water cuts them.
     #[schemars(range(min = 0.0, max = 1e9), extend("x-unit" = "m2", "x-effect" = "smooth slopes between fewer gullies"))]
     pub channel_area_m2: f64,
+    /// How water chooses among the eight neighbours of a cell.
+    #[schemars(extend("x-effect" = "rho8: by a chance that is fair to all directions, for even slopes and fine cells"))]
+    pub routing: Routing,
     /// Longest step.
     #[schemars(range(min = 0.001, max = 10000.0), extend("x-unit" = "ky", "x-effect" = "faster, blurs the moment a valley is cut"))]
     pub step_kyr: f64,
@@ -102,6 +117,7 @@ impl Default for StreamPowerParams {
             talus_angle_deg: 35.0,
             talus_all_round: false,
             channel_area_m2: 0.0,
+            routing: Routing::Steepest,
             step_kyr: 100.0,
             rim: Rim::Free,
             coupled: false,
@@ -144,12 +160,12 @@ struct Stage {
 
 impl Stage {
     /// The solver; made when it is first asked for, since the mask is evaluated before the stage changes what it looks at.
-    fn solver(&mut self, world: &World) -> Result<&mut Solver, ProcessError> {
+    fn solver(&mut self, world: &World, context: &Context) -> Result<&mut Solver, ProcessError> {
         match &mut self.solver {
             Some(solver) => Ok(solver),
             empty => {
                 let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
-                Ok(empty.insert(Solver::new(&self.params, world, mask)))
+                Ok(empty.insert(Solver::new(&self.params, world, mask, context.key)))
             }
         }
     }
@@ -180,14 +196,14 @@ impl Process for Stage {
         context.check()?;
         let span_yr = |steps: u64| 1e6 * self.params.duration_myr * (steps as f64 / self.steps as f64);
         let elapsed_yr = span_yr(self.done + 1) - span_yr(self.done);
-        let solver = self.solver(world)?;
+        let solver = self.solver(world, context)?;
         solver.advance(world, elapsed_yr, context.stage);
         self.done += 1;
         Ok(Step { done: self.done as f64 / self.steps as f64, elapsed_yr })
     }
 
     fn follow(&mut self, world: &mut World, context: &Context, span_yr: f64) -> Result<(), ProcessError> {
-        self.solver(world)?.advance(world, span_yr, context.stage);
+        self.solver(world, context)?.advance(world, span_yr, context.stage);
         Ok(())
     }
 
@@ -196,11 +212,11 @@ impl Process for Stage {
         State { fields, blob: self.done.to_le_bytes().to_vec() }
     }
 
-    fn restore(&mut self, state: State, _context: &Context) -> Result<(), ProcessError> {
+    fn restore(&mut self, state: State, context: &Context) -> Result<(), ProcessError> {
         let broken = || ProcessError::Failed("the saved state of stream_power is broken".to_owned());
         self.done = u64::from_le_bytes(state.blob.try_into().map_err(|_| broken())?);
         if !state.fields.is_empty() {
-            self.solver = Some(Solver::restored(&self.params, &state.fields).ok_or_else(broken)?);
+            self.solver = Some(Solver::restored(&self.params, &state.fields, context.key).ok_or_else(broken)?);
         }
         Ok(())
     }

@@ -2,12 +2,14 @@
 
 use crate::{
     erosion::column::{Change, Column, Ground},
-    grid::Field,
+    flow::Router,
+    grid::{Field, Grid},
+    noise::Key,
     world::{Inflow, Layer, World},
 };
 
 use super::{
-    StreamPowerParams,
+    Routing, StreamPowerParams,
     carver::{Carver, Forcing, Law},
 };
 
@@ -23,14 +25,15 @@ pub struct Solver {
 }
 
 impl Solver {
-    /// A solver with these parameters for worlds over the grid of `world`; `mask` scales its rates.
-    pub fn new(params: &StreamPowerParams, world: &World, mask: Option<Field<f32>>) -> Self {
+    /// A solver with these parameters for worlds over the grid of `world`; `mask` scales its rates, `key`
+    /// is the stage's.
+    pub fn new(params: &StreamPowerParams, world: &World, mask: Option<Field<f32>>, key: Key) -> Self {
         Self {
             law: params.law(),
             uniform_rain_mm_per_yr: params.rain_mm_per_yr,
             step_yr: params.step_kyr * 1e3,
             mask,
-            carver: Carver::new(world.grid),
+            carver: Carver::routed(params.routing.router(world.grid, key)),
             column: Column::new(world.grid),
             height_m: Vec::new(),
         }
@@ -43,11 +46,11 @@ impl Solver {
     }
 
     /// The solver from what was saved; `None` where that is not whole.
-    pub fn restored(params: &StreamPowerParams, fields: &[(String, Field<f32>)]) -> Option<Self> {
+    pub fn restored(params: &StreamPowerParams, fields: &[(String, Field<f32>)], key: Key) -> Option<Self> {
         let field = |wanted: &str| fields.iter().find(|(name, _)| name == wanted).map(|(_, field)| field.clone());
         let rest = field("rest")?;
         let world = World::new(rest.grid, 0.0);
-        Some(Self { column: Column::restored(rest), ..Self::new(params, &world, field("mask")) })
+        Some(Self { column: Column::restored(rest), ..Self::new(params, &world, field("mask"), key) })
     }
 
     /// Goes on by `span_yr`, in equal steps of at most the one asked for, and books under `stage`. Reads the layers
@@ -106,4 +109,19 @@ impl Solver {
             (soft, mask) => soft.or_else(|| mask.clone()),
         }
     }
+}
+
+impl Routing {
+    fn router(self, grid: Grid, key: Key) -> Router {
+        let key = key.named("routing");
+        match self {
+            Self::Steepest => Router::new(grid),
+            Self::Rho8 => Router::fair(grid, |x, y| unit(key.lattice(x as i32, y as i32))),
+        }
+    }
+}
+
+/// Uniform in [0, 1), of the upper 53 bits.
+fn unit(bits: u64) -> f64 {
+    (bits >> 11) as f64 / (1u64 << 53) as f64
 }
