@@ -17,6 +17,7 @@ use crate::{
     rivers::RiversParams,
     tectonics::PlatesParams,
     terrain::Shape,
+    volcano::{AshParams, LavaSheetParams},
 };
 
 use super::schema;
@@ -122,6 +123,12 @@ fn table() -> Vec<StageKind> {
         ground::<t::RmpPeakParams>("rmp_peak", "Peak", "A mountain of many random Voronoi cells about a point."),
         ground::<t::RmpRidgeParams>("rmp_ridge", "Ridge", "A range of many random Voronoi cells along a drawn line."),
         ground::<t::RmpGraphParams>("rmp_graph", "Line-cut massif", "A massif of faces between random lines."),
+        row("lava_sheet", "Lava sheet", "Lava as a sheet that runs for kilometres, cools and freezes into the ground.", |lava: LavaSheetParams, setting| {
+            Ok(lava.process(setting.placement, setting.steps))
+        }),
+        row("ash", "Ash fall", "Ash of an eruption falls downwind and drapes the ground.", |ash: AshParams, setting| {
+            Ok(ash.process(setting.placement))
+        }),
         row("climate", "Climate", "Wind, rain, temperature, snow line, and what grows.", |climate: ClimateParams, setting| {
             Ok(climate.process(setting.placement))
         }),
