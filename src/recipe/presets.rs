@@ -48,6 +48,7 @@ const ALL: &[Preset] = presets! {
     "river-source"
     "rainstorm"
     "volcanic-slope"
+    "shield-flows"
 };
 
 /// Every preset.

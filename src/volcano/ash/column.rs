@@ -109,7 +109,9 @@ mod tests {
         let one = AshParams { spread_phi: 0.0, ..ash.clone() };
         let density = |t: f64| (1.0 - t) * (4.0 * (t - 1.0)).exp();
         let simpson = |f: &dyn Fn(f64) -> f64| {
-            (0..=1000).map(|k| f(k as f64 * 1e-3) * [1.0, 4.0, 2.0][if k % 1000 == 0 { 0 } else { 2 - k % 2 }]).sum::<f64>()
+            (0..=1000)
+                .map(|k| f(k as f64 * 1e-3) * [1.0, 4.0, 2.0][if k % 1000 == 0 { 0 } else { 2 - k % 2 }])
+                .sum::<f64>()
         };
         let height = 12e3 * simpson(&|t| t * density(t)) / simpson(&density);
         let want = 10.0 / terminal_m_per_s(5e-4, 1000.0) * height;

@@ -104,7 +104,9 @@ mod tests {
         let (plume, key) = (plume(), Key::new(7));
         assert_eq!(plume.puffs(key, 100.0), plume.puffs(key, 100.0));
         let follow = |number: u64| -> Vec<Puff> {
-            (0..900).filter_map(|k| plume.puffs(key, 50.0 + 0.1 * k as f64).into_iter().find(|p| p.number == number)).collect()
+            (0..900)
+                .filter_map(|k| plume.puffs(key, 50.0 + 0.1 * k as f64).into_iter().find(|p| p.number == number))
+                .collect()
         };
         let path = follow(100);
         assert!(path.len() > 200);

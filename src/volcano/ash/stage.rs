@@ -88,7 +88,9 @@ impl Process for Stage {
             landed_m3 += each_m3 * sum_rows(grid.height, |y| fallen[y * grid.width..][..grid.width].iter().sum());
             let depth_m = each_m3 / grid.cell_area_m2();
             let before = thick.clone();
-            map_cells(&mut thick.data, grid.width, |x, y| before.at(x, y) + (depth_m * fallen[grid.index(x, y)]) as f32);
+            map_cells(&mut thick.data, grid.width, |x, y| {
+                before.at(x, y) + (depth_m * fallen[grid.index(x, y)]) as f32
+            });
         }
         if let Some(mask) = &mask {
             let whole = thick.clone();

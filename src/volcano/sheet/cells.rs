@@ -4,7 +4,7 @@
 //! it falls, and what comes there is gone; where it is closed they are walls.
 
 use super::{
-    faces::{FILM_M, Side, face},
+    faces::{FILM_M, Side, face, tilt},
     law::Law,
     rows::Rows,
     solve::Solver,
@@ -147,7 +147,9 @@ impl Sheet {
         rows.each(sides, |x, y, side| {
             let i = y * rows.width + x;
             let flow = if molten[i] > 0.0 { law.flow(heat[i] / molten[i]) } else { Default::default() };
-            *side = Side { bed: bed[i], surface: bed[i] + molten[i], flow };
+            let [west, east, north, south] = rows.around(x, y).map(|there| molten[there]);
+            let tilt = [tilt(west, molten[i], east), tilt(north, molten[i], south)];
+            *side = Side { bed: bed[i], surface: bed[i] + molten[i], flow, tilt };
         });
     }
 
@@ -167,14 +169,11 @@ impl Sheet {
                 }
                 let (tx, ty) = (there % rows.width, there / rows.width);
                 let around = rows.around(tx, ty);
-                let [a, b, c, d] = if axis == 0 {
-                    [north, south, around[2], around[3]]
-                } else {
-                    [west, east, around[0], around[1]]
-                };
+                let [a, b, c, d] =
+                    if axis == 0 { [north, south, around[2], around[3]] } else { [west, east, around[0], around[1]] };
                 let felt = |k: usize, from: &Side| sides[k].felt_from(from.surface);
                 let turn = felt(a, &here) - felt(b, &here) + felt(c, &far) - felt(d, &far);
-                [fluxes[axis], eases[axis]] = face(law, [&here, &far], 0.25 * turn / *cell_m, *cell_m);
+                [fluxes[axis], eases[axis]] = face(law, [&here, &far], axis, 0.25 * turn / *cell_m, *cell_m);
             }
             (*flux, *ease) = (fluxes, eases);
             0.0
@@ -261,7 +260,8 @@ impl Sheet {
                 if into > 0.0 {
                     let moved = into * share[there] * pace;
                     depth += moved;
-                    warmth += if self.molten[there] > 0.0 { moved * (self.heat[there] / self.molten[there]) } else { 0.0 };
+                    warmth +=
+                        if self.molten[there] > 0.0 { moved * (self.heat[there] / self.molten[there]) } else { 0.0 };
                 } else {
                     let moved = into * share[i] * pace;
                     depth += moved;

@@ -15,6 +15,8 @@ pub(super) struct Side {
     /// Top of the lava, m.
     pub(super) surface: f64,
     pub(super) flow: Flow,
+    /// By how much its depth grows across it, towards east and south, m; no more than its neighbours bear out.
+    pub(super) tilt: [f64; 2],
 }
 
 impl Side {
@@ -25,12 +27,26 @@ impl Side {
     }
 }
 
+/// By how much depth grows across a cell between two others: the mean of both differences, none at a crest, and never twice
+/// the lesser (van Leer's monotonized central limiter).
+#[inline(always)]
+pub(super) fn tilt(before: f64, here: f64, after: f64) -> f64 {
+    let (back, ahead) = (here - before, after - here);
+    if back * ahead <= 0.0 {
+        0.0
+    } else {
+        (0.5 * (back + ahead)).clamp(-2.0 * back.abs().min(ahead.abs()), 2.0 * back.abs().min(ahead.abs()))
+    }
+}
+
 /// Lava over a metre of face from the first cell to the second, m²/s, and by how much more a steeper slope makes it, m²/s;
 /// `across` is the surface's slope along the face.
 #[inline(always)]
-pub(super) fn face(law: &Law, [one, two]: [&Side; 2], across: f64, cell_m: f64) -> [f64; 2] {
+pub(super) fn face(law: &Law, [one, two]: [&Side; 2], axis: usize, across: f64, cell_m: f64) -> [f64; 2] {
     let fall = one.surface - two.surface;
-    let (donor, taker) = if fall > 0.0 || (fall == 0.0 && one.bed > two.bed) { (one, two) } else { (two, one) };
+    let onwards = fall > 0.0 || (fall == 0.0 && one.bed > two.bed);
+    let (donor, taker, lean) =
+        if onwards { (one, two, 0.5 * one.tilt[axis]) } else { (two, one, -0.5 * two.tilt[axis]) };
     // What stands above the higher bed can pass.
     let sill = one.bed.max(two.bed);
     let (high, low) = (donor.surface - sill, (taker.surface - sill).max(0.0));
@@ -42,11 +58,13 @@ pub(super) fn face(law: &Law, [one, two]: [&Side; 2], across: f64, cell_m: f64) 
     let slope = if level { 0.0 } else { fall / cell_m };
     // Where lava runs down its own surface over level ground the integral over the face is known: of h³ from one depth to
     // the other. Where the ground falls, what comes from upwind decides.
-    let (sinks, drops) = (high - low, (one.bed - two.bed).abs());
+    let drops = one.bed - two.bed;
+    let (sinks, drops) = ((fall - drops).abs(), drops.abs());
     let spreads = if sinks + drops > 0.0 { sinks / (sinks + drops) } else { 1.0 };
-    let depth = high + spreads * (0.5 * (high + low) - high);
-    let cube = high * high * high;
-    let integral = 0.25 * (cube + low * (high * high + low * (high + low)));
+    let upwind = if donor.bed < sill { high } else { (high + lean).max(0.0) };
+    let depth = upwind + spreads * (0.5 * (high + low) - upwind);
+    let integral = 0.25 * (high * high * high + low * (high * high + low * (high + low)));
+    let cube = upwind * upwind * upwind;
     let cube = cube + spreads * (integral - cube);
     let steep = libm::sqrt(slope * slope + across * across);
     let pull = law.weight * depth * steep;

@@ -120,6 +120,12 @@ impl Rows {
         data.par_chunks_exact_mut(self.width).enumerate().map(of).collect::<Vec<f64>>().iter().sum()
     }
 
+    /// The sum of `f(x, y)` over the cells of the spans.
+    pub(super) fn total(&self, f: impl Fn(usize, usize) -> f64 + Sync + Send) -> f64 {
+        let of = |y: usize| self.span(y).map(|x| f(x, y)).sum::<f64>();
+        if self.cells <= FEW { (0..self.height).map(of).sum() } else { crate::grid::sum_rows(self.height, of) }
+    }
+
     /// The greatest `f(x, y)` over the cells of the spans, and 0.
     pub(super) fn max(&self, f: impl Fn(usize, usize) -> f64 + Sync + Send) -> f64 {
         let of = |y: usize| self.span(y).map(|x| f(x, y)).fold(0.0, f64::max);

@@ -7,12 +7,14 @@
 
 use super::rows::Rows;
 
-/// Share of the first error, measured in the preconditioner's norm, at which it is good enough: fluxes keep mass anyway.
-const GOOD: f64 = 1e-4;
-/// Rounds after which what there is has to do.
-const MOST_ROUNDS: usize = 200;
-/// Square of an error that nobody sees, m².
-const UNSEEN_M2: f64 = 1e-18;
+/// Error, as a share of the surface's change, at which that is good enough: fluxes keep mass anyway. An error measured by
+/// the right-hand side would not do: that is thousands of times what a pond's surface changes by.
+const GOOD: f64 = 1e-3;
+/// Rounds after which what there is has to do, and between two looks at the error.
+const MOST_ROUNDS: usize = 400;
+const LOOK: usize = 4;
+/// Sum of the errors' squares that nobody sees, m².
+const UNSEEN_M2: f64 = 1e-20;
 
 /// What it works with.
 #[derive(Clone, Debug)]
@@ -47,9 +49,11 @@ impl Solver {
             0.0
         });
         let mut rest = rows.sum(way, |x, y, way| *way * error[y * rows.width + x]);
-        let goal = (GOOD * GOOD * rest).max(UNSEEN_M2);
         let mut round = 0;
-        while rest > goal && round < MOST_ROUNDS {
+        while rest > 0.0 && round < MOST_ROUNDS {
+            if round % LOOK == 0 && good(rows, change, error) {
+                break;
+            }
             round += 1;
             let bend = rows.sum(steep, |x, y, steep| {
                 let i = y * rows.width + x;
@@ -76,4 +80,13 @@ impl Solver {
         }
         round
     }
+}
+
+/// Whether what is unexplained is little beside the change.
+fn good(rows: &Rows, change: &[f64], error: &[f64]) -> bool {
+    let excess = |x: usize, y: usize| {
+        let i = y * rows.width + x;
+        error[i] * error[i] - GOOD * GOOD * change[i] * change[i]
+    };
+    rows.total(excess) <= UNSEEN_M2
 }

@@ -153,8 +153,10 @@ impl Run {
     /// Lays lava on the column. Sediment that lava has come over is bedrock from then on.
     fn lay(&mut self, world: &mut World, cells: &[Fresh], frozen_m3: f64, (date, hard): (f32, f32), stage: &str) {
         let (stock, waited) = (world.rock_m3(), crate::grid::sum_f64(&self.rest.data));
-        let kept = [Layer::Bedrock, Layer::Lava, Layer::Sediment, Layer::Hardness, Layer::LavaTemperature, Layer::LavaDate];
-        let mut layers = kept.map(|layer| std::mem::replace(world.layer_mut(layer), Field::filled(self.rest.grid, 0.0)));
+        let kept =
+            [Layer::Bedrock, Layer::Lava, Layer::Sediment, Layer::Hardness, Layer::LavaTemperature, Layer::LavaDate];
+        let mut layers =
+            kept.map(|layer| std::mem::replace(world.layer_mut(layer), Field::filled(self.rest.grid, 0.0)));
         let [bedrock, lava, sediment, hardness, degc, dates] = &mut layers;
         for fresh in cells {
             let i = fresh.cell;
@@ -166,7 +168,8 @@ impl Run {
             }
             if fresh.frozen > 0.0 {
                 let old = if degc.data[i] == 0.0 { 0.0 } else { parts[1].max(0.0) };
-                degc.data[i] = ((old * f64::from(degc.data[i]) + fresh.frozen * fresh.degc) / (old + fresh.frozen)) as f32;
+                degc.data[i] =
+                    ((old * f64::from(degc.data[i]) + fresh.frozen * fresh.degc) / (old + fresh.frozen)) as f32;
                 dates.data[i] = date;
                 let covers = 1.0 - libm::exp(-fresh.frozen / COVER_M);
                 hardness.data[i] += (hard - hardness.data[i]) * covers as f32;
@@ -246,7 +249,11 @@ impl Process for Stage {
 
     fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
         let params = &self.params;
-        params.check().and_then(|()| params.check_work(grid)).and_then(|()| params.check_vents(grid)).map_err(ProcessError::Unfit)
+        params
+            .check()
+            .and_then(|()| params.check_work(grid))
+            .and_then(|()| params.check_vents(grid))
+            .map_err(ProcessError::Unfit)
     }
 
     fn remarks(&self, grid: &Grid) -> Vec<String> {
