@@ -24,6 +24,7 @@ mod cells;
 mod cool;
 mod emission;
 mod faces;
+mod film;
 mod law;
 mod params;
 mod rows;
@@ -32,4 +33,5 @@ mod stage;
 #[cfg(test)]
 mod tests;
 
+pub use film::Film;
 pub use params::{LavaSheetParams, SheetKey, SheetVent};
