@@ -58,6 +58,7 @@ const ALL: &[Preset] = presets! {
     "spiky"
     "raymarched-archipelago"
     "hotspot-chain"
+    "shield-flows"
 };
 
 /// Every preset.

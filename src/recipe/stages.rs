@@ -16,7 +16,7 @@ use crate::{
     process::{Placement, Process, ProcessError, Shape},
     rivers::RiversParams,
     tectonics::PlatesParams,
-    volcano::{IslandParams, VolcanoParams},
+    volcano::{AshParams, IslandParams, LavaSheetParams, VolcanoParams},
 };
 
 use super::schema;
@@ -129,6 +129,12 @@ fn table() -> Vec<StageKind> {
                 Ok(volcano.process(setting.placement))
             })
         },
+        row("lava_sheet", "Lava sheet", "Lava as a sheet that runs for kilometres, cools and freezes into the ground.", |lava: LavaSheetParams, setting| {
+            Ok(lava.process(setting.placement, setting.steps))
+        }),
+        row("ash", "Ash fall", "Ash of an eruption falls downwind and drapes the ground.", |ash: AshParams, setting| {
+            Ok(ash.process(setting.placement))
+        }),
         row("climate", "Climate", "Wind, rain, temperature, snow line, and what grows.", |climate: ClimateParams, setting| {
             Ok(climate.process(setting.placement))
         }),

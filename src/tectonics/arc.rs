@@ -57,6 +57,13 @@ pub fn cones(
     gains
 }
 
+/// Where a stretch has volcanoes now: a key and the place of each.
+pub fn volcanoes(plate: &Plate, stretch: &Stretch, arc: &Arc, site_key: Key) -> Vec<(u64, DVec2)> {
+    let line = arc.line(stretch);
+    let sites = line.map(|line| sites_near(plate, line, arc, site_key)).unwrap_or_default();
+    sites.into_iter().map(|(site, at_m, _)| (site, at_m)).collect()
+}
+
 /// Volcano sites within a third of a spacing of a line: key, place and strength of each.
 fn sites_near(plate: &Plate, line: [DVec2; 2], arc: &Arc, key: Key) -> Vec<(u64, DVec2, f64)> {
     let pitch = 0.6 * arc.spacing_m;

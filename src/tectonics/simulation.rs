@@ -3,7 +3,7 @@
 //! One geologic step is a few engine steps, so many that no two plates close more than about three and a half tectonic cells.
 //! Crust is booked: what spreading, accretion and volcanoes make comes in, what sinks leaves, what collides is moved.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -25,6 +25,8 @@ use super::{
 const CELLS_PER_STEP: f64 = 3.5;
 /// Height at which a volcano on sea floor grows no more, m.
 const HIGHEST_VOLCANO_M: f32 = 3_500.0;
+/// Height that a site has built up before it is a volcano, m.
+const VOLCANO_M: f32 = 100.0;
 /// How much lower it stays for each metre of crust that was added below it: high ground bears lower cones.
 const VOLCANO_LOSS: f32 = 0.07;
 /// Crust of gap cells beside a continent, as a share of the crust beside them.
@@ -396,10 +398,32 @@ impl Simulation {
         self.stretches.iter().flat_map(points).collect()
     }
 
+    /// The volcanoes that stand over a sinking plate now, each once, where they have built something.
+    pub fn volcanoes(&self) -> Vec<DVec2> {
+        let key = self.volcano_key();
+        let mut seen = BTreeSet::new();
+        let mut places = Vec::new();
+        for stretch in &self.stretches {
+            let plate = &self.plates[stretch.over];
+            for (site, at_m) in arc::volcanoes(plate, stretch, &self.rules.arc, key.with(stretch.over as u64)) {
+                let built = plate.owned_under(at_m).is_some_and(|i| plate.rock[i].edifice_m > VOLCANO_M);
+                if built && seen.insert((stretch.over, site)) {
+                    places.push(at_m);
+                }
+            }
+        }
+        places
+    }
+
+    /// What the places of volcanoes are drawn from.
+    fn volcano_key(&self) -> Key {
+        self.key.named("volcano sites")
+    }
+
     /// Grows the volcanoes of all arcs.
     fn erupt(&mut self, step_myr: f64) {
         let key = self.key.named("erupt").with(self.step);
-        let sites = self.key.named("volcano sites");
+        let sites = self.volcano_key();
         let rules = &self.rules;
         let gains: Vec<Vec<Share>> = self
             .stretches

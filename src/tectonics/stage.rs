@@ -443,6 +443,7 @@ impl Geologic {
         world.set_table(tables::outlines(&self.simulation, &self.warp, &self.bodies));
         world.set_table(tables::convergence(&self.simulation));
         world.set_table(tables::arcs(&self.simulation, &self.warp));
+        world.set_vents(&tables::vents(&self.simulation, &self.warp));
     }
 
     fn book(&self, world: &mut World, context: &Context) {

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::world::Table;
+use crate::world::{Table, Vent};
 
 use super::{simulation::Simulation, warp::Warp};
 
@@ -88,6 +88,15 @@ pub fn arcs(run: &Simulation, warp: &Warp) -> Table {
         .number("x_km", "km", numbers(&|i| points[i].1.x * 1e-3))
         .number("y_km", "km", numbers(&|i| points[i].1.y * 1e-3))
         .number("closing_mm_per_yr", "mm/yr", numbers(&|i| points[i].0.closing_m_per_yr * 1e3))
+}
+
+/// Radius of the crater of an arc's volcano, m: small beside the cells of any map of plates.
+const CRATER_M: f64 = 400.0;
+
+/// The volcanoes of the arcs of now, as the map shows them.
+pub fn vents(run: &Simulation, warp: &Warp) -> Vec<Vent> {
+    let vent = |at_m| Vent { at_m: warp.shown_at(at_m).into(), radius_m: CRATER_M, age_yr: 0.0 };
+    run.volcanoes().into_iter().map(vent).collect()
 }
 
 /// The table `plate_outlines`: the rigid outlines where they are now, as the map shows them.

@@ -1,16 +1,22 @@
-//! Volcanoes: islands to stand on, and edifices with craters, alone, in chains behind a hot spot, or along arcs.
+//! Volcanoes: islands to stand on, edifices with craters, alone, in chains behind a hot spot, or along arcs; the lava and ash
+//! they pour and throw out, and what becomes of it.
 //!
 //! `island` and `volcano` are base terrain: they lay heights into the bedrock in one go, in metres, keyed by place and count,
 //! so that another size refines the land and does not change it. Where the plates say how ground moves or where a slab
 //! sinks, they are asked through the world's tables. Vents go into the table that [`crate::world::World::vents`] reads.
 
+pub mod ash;
 mod edifice;
 mod island;
+mod outlet;
+pub mod sheet;
 
+pub use ash::AshParams;
 pub use edifice::{
     Arc, Chain, Cone, Edifice, Edifices, Place, Profile, Reader, Roughness, VolcanoEntry, VolcanoParams, Wear,
 };
 pub use island::{IslandEntry, IslandParams, IslandProfile};
+pub use sheet::{LavaSheetParams, SheetKey, SheetVent};
 
 use crate::grid::Grid;
 

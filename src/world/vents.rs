@@ -29,6 +29,15 @@ impl World {
     /// Adds vents to those that are there.
     pub fn add_vents(&mut self, new: &[Vent]) {
         let all: Vec<Vent> = self.vents().into_iter().chain(new.iter().copied()).collect();
+        self.set_vents(&all);
+    }
+
+    /// Sets the vents in place of those that are there.
+    pub fn set_vents(&mut self, all: &[Vent]) {
+        self.remove_table(VENTS);
+        if all.is_empty() {
+            return;
+        }
         let column = |f: fn(&Vent) -> f64| all.iter().map(f).collect::<Vec<_>>();
         self.set_table(
             Table::new(VENTS)

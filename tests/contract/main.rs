@@ -53,6 +53,13 @@ const CASES: &[Case] = &[
     case("volcano", "blend = 'max'\nplace = 'chain'\nradius_km = 80.0\n"),
     case("climate", ""),
     case("climate", "rain_mm_per_yr = 800.0\nmask = 'height > 0'\n"),
+    case("lava_sheet", "steps = 4\nduration_h = 6\nschedule = [{ start_h = 0, duration_h = 3, m3_per_s = 2e4 }]\n"),
+    case(
+        "lava_sheet",
+        "steps = 3\nduration_h = 3\nschedule = [{ start_h = 0, m3_per_s = 5e4 }]\nvent = [{ at_km = [500, 400], to_km = [600, 500] }]\nmask = 'height > -2000'\n",
+    ),
+    case("ash", "volume_km3 = 50\ncolumn_km = 30\n"),
+    case("ash", "volume_km3 = 50\nat_km = [300, 300]\nmask = 'height > 0'\n"),
     case("import", ""),
     Case { kind: "stream_power", params: "duration_myr = 0.5\n", may_leave_out: &[Layer::Lava] },
     Case {

@@ -138,6 +138,10 @@ fn arcs_stand_inland_of_the_trench_where_they_should() {
         let trench_m = run.plates[1].pose.to_map(DVec2::new(-8.0 * 50e3, 0.0)).x;
         let points = run.arc_points();
         assert!(points.len() > 40 && points.iter().all(|(_, at)| (at.x - trench_m - arc_m).abs() < 2.0 * CELL_M));
+        // Volcanoes stand within a quarter of a spacing of it.
+        let volcanoes = run.volcanoes();
+        let near = |at: &DVec2| (at.x - trench_m - arc_m).abs() < spacing_m / 4.0 + 2.0 * CELL_M;
+        assert!(volcanoes.len() > 10 && volcanoes.iter().all(near), "{volcanoes:?}");
         // A cone's Voronoi cell seldom reaches farther than three of its half widths from its site.
         let reach_m = spacing_m / 4.0 + CELL_M + 3.0 * 0.12 * spacing_m;
         let outside: f64 =
