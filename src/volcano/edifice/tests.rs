@@ -1,3 +1,5 @@
+//! What volcanoes promise: their surface and its gradient, where they stand, how they age, what is refused.
+
 use proptest::prelude::*;
 
 use super::*;
