@@ -178,9 +178,12 @@ impl Motion {
 
     /// How far the plate has come since then, m.
     fn carried(&self, age_myr: f64) -> [f64; 2] {
-        let piece_myr = age_myr / PIECES as f64;
+        // Up to the turn in pieces, before it straight on.
+        let own_myr = self.bend.map_or(age_myr, |(since_myr, _)| age_myr.min(since_myr));
+        let earlier = self.bend.map_or([0.0; 2], |(_, velocity)| velocity.map(|v| v * (age_myr - own_myr) * 1e6));
+        let piece_myr = own_myr / PIECES as f64;
         let middle = |i: usize| self.before((i as f64 + 0.5) * piece_myr);
-        (0..PIECES).map(middle).fold([0.0; 2], |[x, y], [vx, vy]| [x + vx * piece_myr * 1e6, y + vy * piece_myr * 1e6])
+        (0..PIECES).map(middle).fold(earlier, |[x, y], [vx, vy]| [x + vx * piece_myr * 1e6, y + vy * piece_myr * 1e6])
     }
 }
 
