@@ -27,7 +27,7 @@ fn hills(size: usize) -> Bed {
     let grid = Grid::new(size, size, 8.0 * size as f64, Edges::Open);
     let sum = Fbm::new(2500.0, 0.9).octaves(Key::new(5), grid.cell_m);
     let start = Field::from_fn(grid, |x, y| 150.0 * sum.value(grid.center_m(x, y)) as f32).data;
-    Bed { grid, change: vec![0.0; start.len()], start, rate: Vec::new(), sea_m: -1e4, locked: false }
+    Bed { sea_m: -1e4, ..Bed::new(grid, start) }
 }
 
 fn on(threads: usize) -> rayon::ThreadPool {
@@ -143,14 +143,7 @@ fn particles(c: &mut Criterion) {
     group.sample_size(10);
     for threads in [1, 2] {
         let pool = on(threads);
-        let mut bed = Bed {
-            grid,
-            change: vec![0.0; start.len()],
-            start: start.clone(),
-            rate: Vec::new(),
-            sea_m: -1e4,
-            locked: false,
-        };
+        let mut bed = Bed { sea_m: -1e4, ..Bed::new(grid, start.clone()) };
         let mut rain = RainParticles::new(&params, grid, Key::new(1)).expect("parameters that run");
         let filled = rain.fill(&bed, [4.0, 4.0, 0.0], [24.0, 24.0, 20.0]);
         let mut step = 0;

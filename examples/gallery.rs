@@ -10,6 +10,7 @@ use std::{
     path::{Path, PathBuf},
     process::Command,
     sync::atomic::AtomicBool,
+    time::Instant,
 };
 
 use image::{RgbImage, codecs::jpeg::JpegEncoder};
@@ -322,10 +323,15 @@ fn five_ways() -> Outcome<[RgbImage; 2]> {
     ];
     let options = Options::bare(PANEL);
     let (mut above, mut below, mut flow) = (Vec::new(), Vec::new(), Vec::new());
+    // The table of docs/erosion.md.
+    println!("| stage | set | mean wear | greatest | median slope | over 35° | streams, km/km² | pits | time |");
+    println!("|---|---|---:|---:|---:|---:|---:|---:|---:|");
     for (name, params) in WAYS {
         let eroded = !name.contains(' ');
         let stage = if eroded { format!("[[stage]]\nkind = '{name}'\n{params}") } else { String::new() };
+        let begun = Instant::now();
         let world = grow(&hills(&stage)?, &mut [])?;
+        println!("{}", figures(name, params, &world, begun.elapsed().as_secs_f64())?);
         let flowing = grow(&hills(&format!("{stage}[[stage]]\nkind = 'rivers'\ncarve = 0.0\n"))?, &mut [])?;
         let (seen, label) = match world.layer(Layer::Wear).filter(|_| eroded) {
             Some(wear) => {
@@ -342,6 +348,27 @@ fn five_ways() -> Outcome<[RgbImage; 2]> {
     }
     above.append(&mut below);
     Ok([above, flow].map(|panels| relief::contact_sheet(&panels, WAYS.len())))
+}
+
+/// A row of the table: what a family wore off, and the land that it left.
+fn figures(name: &str, params: &str, world: &World, seconds: f64) -> Outcome<String> {
+    let survey = measure::survey(world);
+    let (slopes, pits) = (survey.slopes?, survey.pits?);
+    let median = slopes.percentiles_deg.iter().find(|(percent, _)| *percent == 50).map_or(0.0, |(_, slope)| *slope);
+    // Bins of five degrees.
+    let steep: f64 = slopes.histogram[7..].iter().sum();
+    let wear = world.layer(Layer::Wear);
+    let mean = wear.map_or(0.0, |wear| wear.data.iter().map(|&v| v as f64).sum::<f64>() / wear.data.len() as f64);
+    let most = wear.and_then(|wear| wear.range()).map_or(0.0, |(_, most)| most);
+    let set: Vec<String> = params.lines().map(|line| format!("`{}`", line.trim_end_matches(".0"))).collect();
+    Ok(format!(
+        "| {} | {} | {mean:.2} m | {most:.0} m | {median:.1}° | {:.1} % | {:.1} | {} | {seconds:.1} s |",
+        if params.is_empty() { name.to_owned() } else { format!("`{name}`") },
+        set.join(", "),
+        100.0 * steep,
+        survey.density_km_per_km2?,
+        pits.pits
+    ))
 }
 
 /// Hills a kilometre across, and what a stage makes of them.

@@ -14,15 +14,27 @@ pub struct Bed {
     pub start: Vec<f32>,
     /// What has been laid down since, less what was worn off, m.
     pub change: Vec<f32>,
-    /// Share of every rate that a cell has, 0 to 1: the mask, and 1 less its hardness. Empty where that is 1 everywhere.
+    /// Share of every rate that a cell has, 0 to 1: its mask times 1 less its hardness. Empty where that is 1 everywhere.
     pub rate: Vec<f32>,
+    /// The mask alone: nothing comes to lie where it is 0, though hard rock takes what falls on it. Empty where it is 1
+    /// everywhere.
+    pub mask: Vec<f32>,
     /// The sea above the datum, m.
     pub sea_m: f32,
     /// Whether land stays land, and sea sea.
     pub locked: bool,
+    /// How far heights then stay from the sea's level, m: what the world's layers may round away.
+    pub margin_m: f32,
 }
 
 impl Bed {
+    /// Ground of these heights, m, far above any sea, that gives way everywhere.
+    pub fn new(grid: Grid, start: Vec<f32>) -> Self {
+        let change = vec![0.0; start.len()];
+        let (rate, mask) = (Vec::new(), Vec::new());
+        Self { grid, start, change, rate, mask, sea_m: f32::NEG_INFINITY, locked: false, margin_m: 0.0 }
+    }
+
     /// Height above the datum, m.
     #[inline]
     pub fn height(&self, i: usize) -> f32 {
@@ -35,10 +47,52 @@ impl Bed {
         self.rate.get(i).copied().unwrap_or(1.0)
     }
 
-    /// The most that a height may change at once, m: half the way to the sea's level where land and sea are to stay.
+    /// How soft a cell is, 0 to 1, whatever its mask.
+    #[inline]
+    pub fn soft(&self, i: usize) -> f32 {
+        let mask = self.mask.get(i).copied().unwrap_or(1.0);
+        if mask > 0.0 { (self.rate(i) / mask).min(1.0) } else { 0.0 }
+    }
+
+    /// The sea's level and the margin around it, where land and sea are to stay.
+    #[inline]
+    pub fn coast(&self) -> Option<Coast> {
+        self.locked.then_some(Coast { sea_m: self.sea_m, margin_m: self.margin_m })
+    }
+
+    /// The most that a height may change at once, m.
     #[inline]
     pub fn room(&self, height: f32) -> f32 {
-        if self.locked { 0.5 * (height - self.sea_m).abs() } else { f32::INFINITY }
+        self.coast().map_or(f32::INFINITY, |coast| coast.room(height))
+    }
+}
+
+/// Where land has to stay land and sea sea.
+#[derive(Clone, Copy, Debug)]
+pub struct Coast {
+    /// The sea above the datum, m.
+    pub sea_m: f32,
+    /// How far heights stay from that, m.
+    pub margin_m: f32,
+}
+
+impl Coast {
+    /// How far a height is from where it has to stop, m.
+    #[inline(always)]
+    pub fn free(self, height: f32) -> f32 {
+        ((height - self.sea_m).abs() - self.margin_m).max(0.0)
+    }
+
+    /// The most that a height may change at once, m: half of that.
+    #[inline(always)]
+    pub fn room(self, height: f32) -> f32 {
+        0.5 * self.free(height)
+    }
+
+    /// Whether a height that becomes another changes sides.
+    #[inline(always)]
+    pub fn crosses(self, from: f32, to: f32) -> bool {
+        (from < self.sea_m) != (to < self.sea_m)
     }
 }
 

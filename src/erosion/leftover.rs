@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::grid::{Edges, for_each_row, sum_f64};
 
-use super::bed::Bed;
+use super::bed::{Bed, Coast};
 
 /// Share of a difference that passes between two neighbours in a pass; stable to 1/8.
 const SPREAD: f32 = 0.1;
@@ -41,19 +41,25 @@ pub fn lay_down(bed: &mut Bed, rest: &mut [f32], passes: usize) {
 
 /// Lays down all of `rest`: the stage is over.
 pub fn lay_all(bed: &mut Bed, rest: &mut [f32]) {
+    // What the ground has to come to: passes in single precision round, and what they round away is laid down last.
+    let whole = sum_f64(&bed.change) + sum_f64(rest);
     lay_down(bed, rest, PASSES);
     for i in 0..rest.len() {
-        let thin = (rest[i].abs() as f64) < THIN_M && bed.rate(i) > 0.0;
+        let thin = (rest[i].abs() as f64) < THIN_M && bed.rate(i) > 0.0 && bed.room(bed.height(i)) > rest[i].abs();
         put(bed, rest, i, if thin { rest[i] } else { 0.0 });
     }
-    let sum = sum_f64(rest);
+    let sum = whole - sum_f64(&bed.change);
     rest.fill(0.0);
     if sum == 0.0 {
         return;
     }
     // A thin coat on cells all over the map, on land where sea has to stay sea.
-    let open = |bed: &Bed, i: usize| bed.rate(i) > 0.0 && (!bed.locked || bed.height(i) > bed.sea_m + THIN_M as f32);
+    let land_m = bed.sea_m + bed.margin_m + THIN_M as f32;
+    let open = |bed: &Bed, i: usize| bed.rate(i) > 0.0 && (!bed.locked || bed.height(i) > land_m);
     let mut places: Vec<usize> = (0..rest.len()).filter(|&i| open(bed, i)).collect();
+    if places.is_empty() {
+        places = (0..rest.len()).filter(|&i| bed.rate(i) > 0.0).collect();
+    }
     if places.is_empty() {
         places = (0..rest.len()).collect();
     }
@@ -99,10 +105,10 @@ fn fill(bed: &mut Bed, rest: &mut [f32], taken: &mut [f32]) {
             row[x] = fitting(held[i], [height, top], frozen.sea_m, frozen.room(height), frozen.rate(i));
         }
     });
-    let (taken, start, sea) = (&*taken, &bed.start, bed.locked.then_some(bed.sea_m));
+    let (taken, start, coast) = (&*taken, &bed.start, bed.coast());
     bed.change.par_chunks_mut(RUN).zip(rest.par_chunks_mut(RUN)).enumerate().for_each(|(k, (change, rest))| {
         let of = k * RUN..k * RUN + rest.len();
-        put_all(change, rest, &start[of.clone()], &taken[of], sea);
+        put_all(change, rest, &start[of.clone()], &taken[of], coast);
     });
 }
 
@@ -128,7 +134,7 @@ fn take_within(bed: &Bed, held: &[f32], y: usize, taken: &mut [f32]) {
 #[inline(always)]
 fn take_at(bed: &Bed, held: &[f32], y: usize, taken: &mut [f32], rate: impl Fn(usize) -> f32) {
     let (starts, changes) = (within(&bed.start, bed.grid.width, y), within(&bed.change, bed.grid.width, y));
-    let (sea_m, locked) = (bed.sea_m, bed.locked);
+    let (sea_m, coast) = (bed.sea_m, bed.coast());
     for (x, taken) in taken[1..][..held.len()].iter_mut().enumerate() {
         let height = starts[4][x] + changes[4][x];
         let mut top = height;
@@ -136,7 +142,7 @@ fn take_at(bed: &Bed, held: &[f32], y: usize, taken: &mut [f32], rate: impl Fn(u
             let other = starts[k][x] + changes[k][x];
             top = if other > top { other } else { top };
         }
-        let most = if locked { 0.5 * (height - sea_m).abs() } else { f32::INFINITY };
+        let most = coast.map_or(f32::INFINITY, |coast| coast.room(height));
         *taken = fitting(held[x], [height, top], sea_m, most, rate(x));
     }
 }
@@ -165,9 +171,9 @@ fn fitting(held: f32, [height, top]: [f32; 2], sea_m: f32, most: f32, rate: f32)
 
 /// Moves what is taken from the rest of cells to their ground.
 #[multiversion(targets("x86_64+avx2"))]
-fn put_all(change: &mut [f32], rest: &mut [f32], start: &[f32], taken: &[f32], sea: Option<f32>) {
+fn put_all(change: &mut [f32], rest: &mut [f32], start: &[f32], taken: &[f32], coast: Option<Coast>) {
     for (((change, rest), &start), &by) in change.iter_mut().zip(rest).zip(start).zip(taken) {
-        let new = moved(*change, start, by, sea);
+        let new = moved(*change, start, by, coast);
         *rest -= new - *change;
         *change = new;
     }
@@ -175,17 +181,17 @@ fn put_all(change: &mut [f32], rest: &mut [f32], start: &[f32], taken: &[f32], s
 
 /// The change of a cell with `by` more, unless land would become sea or sea land that must not.
 #[inline(always)]
-fn moved(old: f32, start: f32, by: f32, sea: Option<f32>) -> f32 {
+fn moved(old: f32, start: f32, by: f32, coast: Option<Coast>) -> f32 {
     let new = old + by;
     // Half the way may round to the whole.
-    let crosses = |sea_m: f32| (start + old < sea_m) != (start + new < sea_m);
-    if by == 0.0 || sea.is_some_and(crosses) { old } else { new }
+    let crosses = |coast: Coast| coast.crosses(start + old, start + new);
+    if by == 0.0 || coast.is_some_and(crosses) { old } else { new }
 }
 
 /// Moves `by` from the rest of a cell to its ground, where it may.
 fn put(bed: &mut Bed, rest: &mut [f32], i: usize, by: f32) {
     let old = bed.change[i];
-    let new = moved(old, bed.start[i], by, bed.locked.then_some(bed.sea_m));
+    let new = moved(old, bed.start[i], by, bed.coast());
     bed.change[i] = new;
     rest[i] -= new - old;
 }

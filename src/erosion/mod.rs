@@ -19,7 +19,7 @@ pub mod stream_power;
 pub mod thermal;
 mod weathering;
 
-pub use bed::{Bed, Family, Moved, Part, Saved};
+pub use bed::{Bed, Coast, Family, Moved, Part, Saved};
 pub use droplets::{Droplets, DropletsParams};
 pub use hillslope::HillslopeParams;
 pub use hydraulic_cells::{HydraulicCells, HydraulicCellsParams, Steepness};

@@ -27,6 +27,9 @@ pub enum Lock {
     Coast,
 }
 
+/// How far from the sea's level heights stay at least where coasts are locked, m.
+const LEAST_MARGIN_M: f64 = 1e-4;
+
 /// The parameters of a family, and how its solver is made of them.
 pub trait FamilyParams: Send + Sync + 'static {
     /// What works on the bed.
@@ -116,7 +119,7 @@ impl<T: FamilyParams> Stage<T> {
     /// The bed as the stage finds it.
     fn begin(&self, world: &mut World, context: &Context) -> Result<Run<T::Solver>, ProcessError> {
         let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
-        let bed = bed(world, &self.rates(world, mask), self.params.lock());
+        let bed = self.bed(world, mask);
         let solver = self.params.solver(&bed, world, context.key)?;
         let found_m3 = water_m3(world);
         for &layer in T::PEAKS {
@@ -132,11 +135,31 @@ impl<T: FamilyParams> Stage<T> {
         Ok(Run { column: Column::new(world.grid), bed, solver })
     }
 
+    /// The ground of a world under a mask, its heights above the middle of the range so that single precision serves it
+    /// best.
+    fn bed(&self, world: &World, mask: Option<Field<f32>>) -> Bed {
+        let height = world.height();
+        let (low, high) = height.range().unwrap_or((0.0, 0.0));
+        // A whole number of metres, so that taking it away is exact for all but the highest ground.
+        let datum = (0.5 * (f64::from(low) + f64::from(high))).round();
+        let mask = mask.map(|mask| mask.data);
+        Bed {
+            grid: world.grid,
+            start: height.data.iter().map(|&z| (f64::from(z) - datum) as f32).collect(),
+            change: vec![0.0; height.data.len()],
+            rate: self.rates(world, mask.as_deref()),
+            mask: mask.unwrap_or_default(),
+            sea_m: (world.sea_level_m - datum) as f32,
+            locked: self.params.lock() == Lock::Coast,
+            margin_m: margin_m(world, datum),
+        }
+    }
+
     /// Share of every rate by mask, hardness and weather; empty where there is none of them.
-    fn rates(&self, world: &World, mask: Option<Field<f32>>) -> Vec<f32> {
+    fn rates(&self, world: &World, mask: Option<&[f32]>) -> Vec<f32> {
         let soft = world.layer(Layer::Hardness).map(|hardness| hardness.map(|h| (1.0 - h).clamp(0.0, 1.0)).data);
         let pace = self.params.weathers().then(|| pace(world)).flatten().map(|pace| pace.share);
-        let shares = [mask.map(|mask| mask.data), soft, pace].into_iter().flatten();
+        let shares = [mask.map(<[f32]>::to_vec), soft, pace].into_iter().flatten();
         let both = |a: Vec<f32>, b: Vec<f32>| a.iter().zip(&b).map(|(a, b)| a * b).collect();
         shares.reduce(both).unwrap_or_default()
     }
@@ -154,11 +177,13 @@ impl<T: FamilyParams> Stage<T> {
             start: field("start")?,
             change: field("change")?,
             rate: field("rate").unwrap_or_default(),
+            mask: field("mask").unwrap_or_default(),
             sea_m: f32::from_le_bytes(blob.get(..4)?.try_into().ok()?),
             locked: self.params.lock() == Lock::Coast,
+            margin_m: f32::from_le_bytes(blob.get(4..8)?.try_into().ok()?),
         };
         let mut solver = self.params.solver(&bed, world, context.key).ok()?;
-        solver.restore(&|name| field(&own(name)), blob.get(4..)?)?;
+        solver.restore(&|name| field(&own(name)), blob.get(8..)?)?;
         let column = Column::restored(Field { grid: world.grid, data: field("rest")? });
         Some(Run { bed, solver, column })
     }
@@ -195,20 +220,14 @@ fn own(name: &str) -> String {
     format!("family_{name}")
 }
 
-/// The ground of a world, its heights above the middle of the range so that single precision serves it best.
-fn bed(world: &World, rate: &[f32], lock: Lock) -> Bed {
-    let height = world.height();
-    let (low, high) = height.range().unwrap_or((0.0, 0.0));
-    // A whole number of metres, so that taking it away is exact for all but the highest ground.
-    let datum = (0.5 * (f64::from(low) + f64::from(high))).round();
-    Bed {
-        grid: world.grid,
-        start: height.data.iter().map(|&z| (f64::from(z) - datum) as f32).collect(),
-        change: vec![0.0; height.data.len()],
-        rate: rate.to_vec(),
-        sea_m: (world.sea_level_m - datum) as f32,
-        locked: lock == Lock::Coast,
-    }
+/// How far a height may be from the world's after it was moved to a datum and parted into layers, m: each of the three
+/// layers, their sum, the bed and its sea round by half a step of single precision at most.
+fn margin_m(world: &World, datum: f64) -> f32 {
+    let parts = Layer::COLUMN.iter().filter_map(|&layer| world.layer(layer)).filter_map(Field::range);
+    let largest = parts.fold(world.sea_level_m.abs() + datum.abs(), |most, (low, high)| {
+        most.max(f64::from(low.abs())).max(f64::from(high.abs()))
+    });
+    (4.0 * f64::from(f32::EPSILON) * largest).max(LEAST_MARGIN_M) as f32
 }
 
 /// What was laid down between two states of a change, m summed over the cells.
@@ -289,11 +308,14 @@ impl<T: FamilyParams> Process for Stage<T> {
             lay("change", &run.bed.change),
             ("rest".to_owned(), run.column.rest().clone()),
         ];
-        if !run.bed.rate.is_empty() {
-            all.push(lay("rate", &run.bed.rate));
+        for (name, shares) in [("rate", &run.bed.rate), ("mask", &run.bed.mask)] {
+            if !shares.is_empty() {
+                all.push(lay(name, shares));
+            }
         }
         all.extend(fields.into_iter().map(|(name, data)| (own(name), Field { grid, data })));
-        let blob = [&self.done.to_le_bytes()[..], &run.bed.sea_m.to_le_bytes(), &blob].concat();
+        let [sea, margin] = [run.bed.sea_m, run.bed.margin_m].map(f32::to_le_bytes);
+        let blob = [&self.done.to_le_bytes()[..], &sea, &margin, &blob].concat();
         State { fields: all, blob }
     }
 

@@ -306,6 +306,65 @@ fn every_stage_keeps_the_contract() {
     }
 }
 
+/// Heights before and after a family of erosion on hills by the sea, a hundred metres high; those of particles are smaller.
+fn eroded(kind: &str, params: &str) -> [Field<f32>; 2] {
+    let [extent_km, height_m] = if kind == "rain_particles" { [0.096, 20.0] } else { [0.768, 100.0] };
+    let text = format!(
+        "[world]\nsize = 96\nextent_km = {extent_km}\n[[stage]]\nkind = 'fbm'\nheight_m = {height_m}\nwavelength_km = {}\n\
+         [[stage]]\nkind = '{kind}'\n{params}",
+        0.5 * extent_km
+    );
+    let source = Source { name: "case".into(), file: "case.toml".into(), folder: PathBuf::new(), text };
+    let plan = Plan::new(&source, &Overrides::default()).unwrap_or_else(|e| panic!("{kind} {params}: {e}"));
+    let mut world = World::new(plan.world.grid(), 0.0);
+    let stay = AtomicBool::new(false);
+    [0, 1].map(|k| {
+        let stage = &plan.stages[k];
+        go(stage.build().unwrap().as_mut(), &mut world, &Context::new(3, &stage.key, &stay), 0, &[]);
+        world.height()
+    })
+}
+
+/// As much as each family does in a few seconds, with something that brings heights near to the sea.
+const FAMILIES: [(&str, &str); 5] = [
+    ("thermal", "talus_angle_deg = 10.0\nrock_angle_deg = 10.0\nmethod = 'flux'\n"),
+    ("hydraulic_cells", ""),
+    ("droplets", "duration_yr = 50000.0\n"),
+    ("rain_particles", "duration_min = 1\nmorphological_factor = 500\n"),
+    ("pipes", "duration_h = 0.5\n"),
+];
+
+fn coast_stays((kind, params): (&str, &str)) {
+    let [before, after] = eroded(kind, &format!("{params}lock = 'coast'\n"));
+    let crossed: Vec<_> = before.data.iter().zip(&after.data).filter(|(a, b)| (**a < 0.0) != (**b < 0.0)).collect();
+    assert!(crossed.is_empty(), "{kind}: {} cells: {:?}", crossed.len(), &crossed[..crossed.len().min(3)]);
+    assert!(before.data.iter().zip(&after.data).any(|(a, b)| (a - b).abs() > 0.5), "{kind} did nothing");
+}
+
+/// Heights as the world has them: single precision, parted into layers, rounds otherwise than what the stage works with.
+#[test]
+fn a_locked_coast_stays_in_the_world() {
+    FAMILIES[..4].iter().for_each(|&family| coast_stays(family));
+}
+
+#[test]
+fn a_locked_coast_stays_in_the_world_of_pipes() {
+    coast_stays(FAMILIES[4]);
+}
+
+#[test]
+fn nothing_changes_beyond_a_mask() {
+    for (kind, params) in FAMILIES {
+        let [before, after] = eroded(kind, &format!("{params}mask = 'height > 8'\n"));
+        let changed = |within: bool| {
+            let cells = before.data.iter().zip(&after.data).filter(|(a, _)| (**a > 8.0) == within);
+            cells.filter(|(a, b)| a.to_bits() != b.to_bits()).count()
+        };
+        assert_eq!(changed(false), 0, "{kind} changed what is masked out");
+        assert!(changed(true) > 100, "{kind} did nothing");
+    }
+}
+
 #[test]
 fn a_broken_state_is_refused() {
     let case = &CASES[0];

@@ -20,6 +20,10 @@ pub struct Ground {
     pub change: Vec<f32>,
     /// Shares of the rates, 0 in the frame: of every row, or one row for all.
     pub rate: Vec<f32>,
+    /// Droplets that have passed cells in this phase, by the share of their water that was left; without the frame.
+    pub passed: Vec<f32>,
+    /// Cells in a row without the frame.
+    pub columns: usize,
     /// Cells in a row with the frame.
     pub stride: usize,
     /// Rows.
@@ -50,6 +54,8 @@ impl Ground {
     /// nothing weighs.
     pub fn open(&mut self, bed: &Bed, [columns, rows]: [Piece; 2], frame: usize) {
         (self.stride, self.rows, self.frame) = (columns.size + 2 * frame, rows.size, frame);
+        self.columns = columns.size;
+        self.passed.resize(columns.size * rows.size, 0.0);
         let cells = self.stride * rows.size;
         self.start.resize(cells, 0.0);
         self.change.resize(cells, 0.0);
@@ -62,6 +68,14 @@ impl Ground {
         } else {
             self.rate_stride = self.stride;
             self.rate.resize(cells, 0.0);
+        }
+    }
+
+    /// Notes that water passes a cell.
+    #[inline(always)]
+    pub fn pass(&mut self, [x, y]: [usize; 2], water: f32) {
+        if let Some(passed) = self.passed.get_mut(y * self.columns + x) {
+            *passed += water;
         }
     }
 
@@ -81,6 +95,7 @@ impl Ground {
     fn load_row(&mut self, bed: &Bed, [columns, rows]: [Piece; 2], y: usize) {
         let row = (rows.from + y) % bed.grid.height * bed.grid.width;
         let to = self.framed(0, y);
+        self.passed[y * self.columns..][..self.columns].fill(0.0);
         for (at, from, size) in runs(columns, bed.grid.width) {
             self.start[to + at..][..size].copy_from_slice(&bed.start[row + from..][..size]);
             self.change[to + at..][..size].copy_from_slice(&bed.change[row + from..][..size]);

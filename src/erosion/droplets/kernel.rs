@@ -1,6 +1,6 @@
 //! What a droplet takes and lays down around it: a cone whose tip is at the droplet, not at a cell's centre.
 
-use super::{ground::Ground, lanes::whole};
+use super::{super::bed::Coast, ground::Ground, lanes::whole};
 
 /// Narrowest radius, cells: below it the cone would fall between the cells.
 pub const LEAST_RADIUS: f64 = 1.5;
@@ -12,9 +12,6 @@ const RUN: usize = 8;
 pub type Run = [f32; RUN];
 /// Most of the height above the next place of its path that a droplet takes from a cell.
 const CUT: f32 = 0.5;
-
-/// The sea's level, where land has to stay land and sea sea.
-pub type Coast = Option<f32>;
 
 /// Weights of the cells around a tip; their sum is 1 for every place of the tip.
 pub struct Kernel {
@@ -89,13 +86,13 @@ impl Kernel {
 
     /// Works on the cells around a droplet; what was really added, to be summed up.
     #[inline(always)]
-    pub fn work(&self, ground: &mut Ground, work: &Work, coast: Coast) -> Run {
+    pub fn work(&self, ground: &mut Ground, work: &Work, coast: Option<Coast>) -> Run {
         // What most kernels are gets loops of its own.
         match (self.runs, coast) {
             (1, None) => self.work_on(ground, work, 1, |_, _, new| new),
             (runs, None) => self.work_on(ground, work, runs, |_, _, new| new),
-            (runs, Some(sea_m)) => {
-                self.work_on(ground, work, runs, |start, old, new| keep_sides(sea_m, start, old, &new))
+            (runs, Some(coast)) => {
+                self.work_on(ground, work, runs, |start, old, new| keep_sides(coast, start, old, &new))
             }
         }
     }
@@ -152,14 +149,14 @@ impl Work {
 
 /// New changes that go at most half the way to the sea's level, and never over it.
 #[inline(always)]
-fn keep_sides(sea_m: f32, start: &Run, old: &Run, new: &Run) -> Run {
+fn keep_sides(coast: Coast, start: &Run, old: &Run, new: &Run) -> Run {
     let mut kept = [0.0; RUN];
     for i in 0..RUN {
         let height = start[i] + old[i];
-        let room = 0.5 * (height - sea_m).abs();
+        let room = coast.room(height);
         let changed = old[i] + (new[i] - old[i]).max(-room).min(room);
         // Half the way may round to the whole.
-        let crosses = (height < sea_m) != (start[i] + changed < sea_m);
+        let crosses = coast.crosses(height, start[i] + changed);
         kept[i] = if crosses { old[i] } else { changed };
     }
     kept

@@ -32,7 +32,7 @@ use std::sync::Mutex;
 use rayon::prelude::*;
 
 use crate::{
-    grid::{Grid, for_each_row, sum_f64},
+    grid::{Grid, sum_f64},
     noise::{Key, Stream},
 };
 
@@ -53,6 +53,8 @@ const DENSITY: f64 = 1.0 / 16.0;
 const PHASES: usize = 4096;
 /// Passes in which what found no room spreads after each step.
 const PASSES: usize = 2;
+/// Seconds in a year.
+const YEAR_S: f64 = 3600.0 * 8766.0;
 /// Cells a side below which there is no slope to run down.
 const LEAST_SIDE: usize = 4;
 
@@ -73,6 +75,12 @@ pub struct Droplets {
     rain_m: f64,
     /// Rock that has not found room, m by cell. Empty where there is none.
     rest: Vec<f32>,
+    /// Droplets that have passed cells, by the share of their water that was left.
+    passed: Vec<f32>,
+    /// Share of the rain that has fallen.
+    fallen: f64,
+    /// Water of a droplet over the time that all the rain takes, m³/s.
+    droplet_m3_per_s: f64,
     windows: Vec<Window>,
     waiting: Vec<Droplet>,
     steps: u64,
@@ -86,6 +94,7 @@ impl Droplets {
         let strata = [grid.width, grid.height].map(|size| ((size as f64 * per_side).round() as usize).max(1));
         let share = grid.cells() as f64 / (rounds * (strata[0] * strata[1]) as f64);
         let rain_m = params.rain_m();
+        let seconds = (YEAR_S * params.duration_yr).max(1.0);
         Self {
             law: params.law(grid, rain_m * share),
             kernel: Kernel::new(params.radius_cells(grid)),
@@ -95,6 +104,9 @@ impl Droplets {
             strata,
             rain_m,
             rest: Vec::new(),
+            passed: vec![0.0; grid.cells()],
+            fallen: 0.0,
+            droplet_m3_per_s: rain_m * share * grid.cell_area_m2() / seconds,
             windows: Vec::new(),
             waiting: Vec::new(),
             steps: 0,
@@ -104,6 +116,12 @@ impl Droplets {
     /// Steps that droplets have taken since this was made: what its speed is counted in.
     pub fn steps_taken(&self) -> u64 {
         self.steps
+    }
+
+    /// Water that passes cells, m³/s: the mean over the years that have gone by.
+    pub fn discharge(&self) -> Vec<f32> {
+        let per_droplet = if self.fallen > 0.0 { self.droplet_m3_per_s / self.fallen } else { 0.0 };
+        self.passed.iter().map(|&droplets| (f64::from(droplets) * per_droplet) as f32).collect()
     }
 
     /// The rain of a round: one droplet somewhere in each of as many equal parts of the map.
@@ -154,8 +172,9 @@ impl Droplets {
         let phase = Phase { bed, law: &self.law, kernel: &self.kernel, margin };
         (0..threads).into_par_iter().for_each(|_| team::run(phase, &open, width));
         let (grid, windows) = (self.grid, &self.windows);
-        for_each_row(&mut bed.change, grid.width, |y, row| {
-            windows[first[y]..][..across].iter().for_each(|window| window.close(&grid, y, row));
+        let rows = bed.change.par_chunks_exact_mut(grid.width).zip(self.passed.par_chunks_exact_mut(grid.width));
+        rows.enumerate().for_each(|(y, (row, passed))| {
+            windows[first[y]..][..across].iter().for_each(|window| window.close(&grid, y, row, passed));
         });
         self.gather()
     }
@@ -201,6 +220,7 @@ impl Family for Droplets {
             }
             leftover::lay_down(bed, &mut self.rest, PASSES);
         }
+        self.fallen = rounds[1] as f64 / self.rounds;
         Moved { rock_left_m3: left * area, water_in_m3: rain, water_left_m3: rain }
     }
 
@@ -215,12 +235,18 @@ impl Family for Droplets {
     }
 
     fn save(&self) -> Saved {
-        let fields = if self.rest.is_empty() { Vec::new() } else { vec![("rest", self.rest.clone())] };
-        Saved { fields, blob: Vec::new() }
+        let mut fields = vec![("passed", self.passed.clone())];
+        if !self.rest.is_empty() {
+            fields.push(("rest", self.rest.clone()));
+        }
+        Saved { fields, blob: self.fallen.to_le_bytes().to_vec() }
     }
 
-    fn restore(&mut self, field: &dyn Fn(&str) -> Option<Vec<f32>>, _blob: &[u8]) -> Option<()> {
+    fn restore(&mut self, field: &dyn Fn(&str) -> Option<Vec<f32>>, blob: &[u8]) -> Option<()> {
+        let cells = self.grid.cells();
+        self.fallen = f64::from_le_bytes(blob.try_into().ok()?);
+        self.passed = field("passed").filter(|passed| passed.len() == cells)?;
         self.rest = field("rest").unwrap_or_default();
-        (self.rest.is_empty() || self.rest.len() == self.grid.cells()).then_some(())
+        (self.rest.is_empty() || self.rest.len() == cells).then_some(())
     }
 }

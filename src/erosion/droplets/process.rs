@@ -6,7 +6,7 @@ use crate::{
         bed::Bed,
         stage::{FamilyParams, Lock, Stage, cell_size},
     },
-    grid::Grid,
+    grid::{Field, Grid},
     noise::Key,
     process::{Placement, Process, ProcessError},
     world::{Layer, World},
@@ -21,7 +21,8 @@ impl DropletsParams {
 
 impl FamilyParams for DropletsParams {
     type Solver = Droplets;
-    const WRITES: &'static [Layer] = &[Layer::Bedrock, Layer::Lava, Layer::Sediment, Layer::Wear, Layer::Deposit];
+    const WRITES: &'static [Layer] =
+        &[Layer::Bedrock, Layer::Lava, Layer::Sediment, Layer::Wear, Layer::Deposit, Layer::Flow];
     const WATER: bool = false;
     /// Rounds in which the rain falls.
     const STEPS: u64 = 16;
@@ -39,10 +40,19 @@ impl FamilyParams for DropletsParams {
     }
 
     fn remarks(&self, grid: &Grid) -> Vec<String> {
-        cell_size(grid, 1.0, 100.0).into_iter().collect()
+        // No factor between two clocks: a droplet stands for years of rain, whatever they are.
+        let clock = format!(
+            "{} years of {} mm of rain, {} droplets a cell; each stands for its share of all that rain",
+            self.duration_yr, self.rain_mm_per_yr, self.droplets_per_cell
+        );
+        cell_size(grid, 1.0, 100.0).into_iter().chain([clock]).collect()
     }
 
     fn solver(&self, bed: &Bed, _world: &World, key: Key) -> Result<Droplets, ProcessError> {
         Ok(Droplets::new(self, &bed.grid, key))
+    }
+
+    fn show(&self, solver: &Droplets, bed: &Bed, world: &mut World) {
+        world.set_layer(Layer::Flow, Field { grid: bed.grid, data: solver.discharge() });
     }
 }

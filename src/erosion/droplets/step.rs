@@ -2,8 +2,9 @@
 //! another does to the ground: one droplet after another is one long chain of roots, divisions and look-ups.
 
 use super::{
+    super::bed::Coast,
     ground::Ground,
-    kernel::{Coast, Kernel, LAYS, Run, TAKES, Work},
+    kernel::{Kernel, LAYS, Run, TAKES, Work},
     lanes::{LANES, Lane, Lanes},
     places::Places,
     walk::{End, Law, faster},
@@ -180,7 +181,7 @@ impl Lanes {
 impl Deed {
     /// Does what a lane's droplet does to the ground, if it does not end without; what was added.
     #[inline(always)]
-    pub fn work(&self, l: usize, kernel: &Kernel, ground: &mut Ground, coast: Coast) -> Run {
+    pub fn work(&self, l: usize, kernel: &Kernel, ground: &mut Ground, coast: Option<Coast>) -> Run {
         if self.ends[l] >= STILL {
             return Run::default();
         }
@@ -193,6 +194,12 @@ impl Deed {
             sign: self.manner[1][l],
         };
         kernel.work(ground, &work, coast)
+    }
+
+    /// The cell that a lane's droplet was in.
+    #[inline(always)]
+    pub fn cell(&self, l: usize) -> [usize; 2] {
+        [self.cell[0][l] as usize, self.cell[1][l] as usize]
     }
 
     /// How a lane's droplet ends, if it does.

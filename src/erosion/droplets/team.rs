@@ -10,8 +10,8 @@ use multiversion::multiversion;
 use crate::grid::Edges;
 
 use super::{
-    super::bed::Bed,
-    kernel::{Coast, Kernel, Run},
+    super::bed::{Bed, Coast},
+    kernel::{Kernel, Run},
     lanes::{Bounds, LANES, Lane, Lanes},
     step::Rules,
     walk::{Droplet, Law},
@@ -63,7 +63,7 @@ struct Team<'a, 'b> {
 pub fn run(phase: Phase, waiting: &Waiting, width: usize) {
     let grid = &phase.bed.grid;
     let rules = Rules { law: *phase.law, sea_m: phase.bed.sea_m, open: grid.edges == Edges::Open };
-    let coast = phase.bed.locked.then_some(phase.bed.sea_m);
+    let coast = phase.bed.coast();
     let mut team = Team { phase, waiting, posts: [const { None }; LANES], lanes: Lanes::default() };
     (0..LANES).for_each(|l| team.lanes.park(l));
     (0..width.min(LANES)).for_each(|l| team.relieve(l));
@@ -75,7 +75,7 @@ pub fn run(phase: Phase, waiting: &Waiting, width: usize) {
 impl<'a> Team<'a, '_> {
     /// A step of all lanes.
     #[inline(always)]
-    fn beat(&mut self, rules: &Rules, coast: Coast) {
+    fn beat(&mut self, rules: &Rules, coast: Option<Coast>) {
         let mut here = self.lanes.here();
         for l in 0..LANES {
             if let Some(post) = &self.posts[l] {
@@ -94,6 +94,7 @@ impl<'a> Team<'a, '_> {
         for (l, added) in added.iter_mut().enumerate() {
             if let Some(post) = &mut self.posts[l] {
                 *added = deed.work(l, self.phase.kernel, &mut post.window.ground, coast);
+                post.window.ground.pass(deed.cell(l), self.lanes.water[l]);
             }
         }
         self.lanes.go(&heading, &deed, &added);

@@ -13,7 +13,7 @@ fn bed(grid: Grid, f: impl Fn(f64, f64) -> f64 + Sync) -> Bed {
         let [x, y] = grid.center_m(x, y);
         f(x, y) as f32
     });
-    Bed { grid, change: vec![0.0; grid.cells()], start: start.data, rate: Vec::new(), sea_m: -1e5, locked: false }
+    Bed { sea_m: -1e5, ..Bed::new(grid, start.data) }
 }
 
 fn hills(size: usize, cell_m: f64, edges: Edges) -> Bed {
@@ -123,6 +123,26 @@ fn a_droplet_runs_straight_down_a_walled_plane() {
 }
 
 #[test]
+fn flow_is_the_rain_of_what_lies_above() {
+    // A plane 80 cells wide that falls to the east; droplets run all the way, none dries up, and nothing is dug.
+    let grid = Grid { width: 80, height: 40, cell_m: 8.0, edges: Edges::Open };
+    let mut bed = bed(grid, |x, _| 2000.0 - 0.3 * x);
+    let params =
+        DropletsParams { path_m: 1e4, drying_per_km: 0.0, capacity: 0.0, droplets_per_cell: 8.0, ..Default::default() };
+    let mut droplets = Droplets::new(&params, &grid, Key::new(4));
+    for step in 0..2 {
+        droplets.advance(&mut bed, Part { step, steps: 2 });
+        let flow = droplets.discharge();
+        // A metre a year on a strip of cells: through column x goes the rain of x of them.
+        for x in [20usize, 40, 60] {
+            let column: f64 = (0..40).map(|y| f64::from(flow[y * 80 + x])).sum();
+            let want = x as f64 * 40.0 * 64.0 / YEAR_S;
+            assert!((column / want - 1.0).abs() < 0.08, "{step}, {x}: {column:e} m3/s for {want:e}");
+        }
+    }
+}
+
+#[test]
 fn more_droplets_smooth_but_do_not_deepen() {
     let worn = |droplets_per_cell| {
         let mut bed = hills(96, 8.0, Edges::Closed);
@@ -199,10 +219,12 @@ fn land_stays_land_and_the_sea_takes_what_comes() {
     bed.sea_m = 300.0;
     let mut free = bed.clone();
     let params = DropletsParams { duration_yr: 50_000.0, ..Default::default() };
-    bed.locked = true;
+    (bed.locked, bed.margin_m) = (true, 0.01);
     run(&params, &mut bed, 3);
     let land = |bed: &Bed, i: usize| bed.height(i) >= bed.sea_m;
     assert!((0..bed.start.len()).all(|i| land(&bed, i) == (bed.start[i] >= 300.0)));
+    // Nor does any height come nearer than the margin.
+    assert!((0..bed.start.len()).all(|i| bed.change[i] == 0.0 || (bed.height(i) - 300.0).abs() >= 0.009));
     let sea: f64 = (0..bed.start.len()).filter(|&i| bed.start[i] < 300.0).map(|i| bed.change[i] as f64).sum();
     assert!(sea > 1.0, "the sea took {sea} m");
     run(&params, &mut free, 3);
@@ -272,13 +294,25 @@ proptest! {
         rough_log in -3.0f64..5.0,
         logs in (0.0f64..7.0, -3.0f64..0.5, -2.0f64..6.0, -2.0f64..6.0),
         rates in (1.0f64..100.0, 0.0f64..20.0, 0.0f64..1000.0, 0.0f64..1.0, 0.0f64..1.0, 0.0f64..1000.0, 0.0f64..100.0),
-        locked: bool,
+        (locked, kind, shared) in (any::<bool>(), 0u8..3, any::<bool>()),
         seed: u64,
     ) {
         let grid = Grid { width: size.0, height: size.1, cell_m: 10f64.powf(cell_log), edges };
         let mut stream = Key::new(seed).stream();
-        let start = (0..grid.cells()).map(|_| (base + 10f64.powf(rough_log) * stream.unit()) as f32).collect();
-        let mut bed = Bed { grid, start, change: vec![0.0; grid.cells()], rate: Vec::new(), sea_m: base as f32 + 1.0, locked };
+        // Rough ground, a spike, or a pit; heights are counted from the middle of their range.
+        let spike = (stream.unit() * grid.cells() as f64) as usize;
+        let relief = 10f64.powf(rough_log);
+        let datum = (base + 0.5 * relief).round();
+        let start = (0..grid.cells()).map(|i| {
+            let rough = stream.unit();
+            (base + relief * [rough, f64::from(i == spike), f64::from(i != spike)][usize::from(kind)] - datum) as f32
+        });
+        let start: Vec<f32> = start.collect();
+        let mut bed = Bed { sea_m: (base + 1.0 - datum) as f32, locked, margin_m: 1e-4, ..Bed::new(grid, start) };
+        if shared {
+            bed.rate = (0..grid.cells()).map(|_| (1.5 * stream.unit() - 0.25).clamp(0.0, 1.0) as f32).collect();
+        }
+        let before = bed.clone();
         let (path, radius, turning, capacity, least_slope, drying, drag) = rates;
         let params = DropletsParams {
             lock: crate::erosion::Lock::None,
@@ -290,6 +324,11 @@ proptest! {
         prop_assert!(bed.change.iter().all(|v| v.is_finite()));
         let worked: f64 = bed.change.iter().map(|v| v.abs() as f64).sum();
         let error = sum(&bed.change) + left;
-        prop_assert!(error.abs() <= 1e-5 * (worked + left) + 1e-6, "{error:e} of {worked:e}");
+        prop_assert!(error.abs() <= 1e-6 * (worked + left), "{error:e} of {worked:e}");
+        for i in 0..grid.cells() {
+            prop_assert!(bed.rate(i) > 0.0 || bed.change[i] == 0.0, "a masked cell changed by {}", bed.change[i]);
+            let land = |bed: &Bed| bed.height(i) >= bed.sea_m;
+            prop_assert!(!locked || land(&before) == land(&bed), "{} became {}", before.height(i), bed.height(i));
+        }
     }
 }

@@ -84,14 +84,16 @@ impl Window {
         self.ground.loaded = 0..0;
     }
 
-    /// Writes row `y` of the map back, where it is one of the window's and a droplet came near.
-    pub fn close(&self, grid: &Grid, y: usize, row: &mut [f32]) {
+    /// Writes row `y` of the map back, where it is one of the window's and a droplet came near, and adds what passed.
+    pub fn close(&self, grid: &Grid, y: usize, row: &mut [f32], passed: &mut [f32]) {
         let [columns, rows] = self.pieces;
         let local = (y + grid.height - rows.from) % grid.height;
         if self.ground.loaded.contains(&local) {
             let of = self.ground.framed(0, local);
             for (at, from, size) in runs(columns, grid.width) {
                 row[from..][..size].copy_from_slice(&self.ground.change[of + at..][..size]);
+                let own = &self.ground.passed[local * self.ground.columns + at..][..size];
+                passed[from..][..size].iter_mut().zip(own).for_each(|(all, own)| *all += own);
             }
         }
     }

@@ -23,7 +23,7 @@ pub use params::{HydraulicCellsParams, Steepness};
 
 use rayon::prelude::*;
 
-use crate::grid::{Grid, sum_f64};
+use crate::grid::{Grid, sum_f64, sum_rows};
 
 use super::{
     bed::{Bed, Family, Moved, Part, Saved},
@@ -41,8 +41,10 @@ pub struct HydraulicCells {
     grid: Grid,
     /// Depth of water, m.
     water: Vec<f32>,
-    /// Rock that the water carries, m.
-    load: Vec<f32>,
+    /// Rock that the water carries, m: in double precision, as it passes through many cells before it comes to rest.
+    load: Vec<f64>,
+    /// Most water that left cells at the end of a step, m an iteration.
+    passed: Vec<f32>,
     /// Level of ground and water, m, with a ring of cells around the map, as the three below.
     level: Vec<f32>,
     /// Level after the iteration.
@@ -63,7 +65,8 @@ impl HydraulicCells {
             iterations: params.iterations(grid),
             grid: *grid,
             water: cells(),
-            load: cells(),
+            load: vec![0.0; grid.cells()],
+            passed: cells(),
             level: ringed(),
             next: ringed(),
             flow: ringed(),
@@ -82,6 +85,12 @@ impl HydraulicCells {
         &self.water
     }
 
+    /// Water that passed cells in the last iteration, m³/s.
+    pub fn discharge(&self) -> Vec<f32> {
+        let per_s = self.grid.cell_area_m2() / self.law.iteration_s;
+        self.passed.iter().map(|&out| (f64::from(out) * per_s) as f32).collect()
+    }
+
     /// Sets the levels from bed and water.
     fn begin(&mut self, bed: &Bed) {
         let (width, water) = (self.grid.width, &self.water);
@@ -94,11 +103,14 @@ impl HydraulicCells {
         });
     }
 
-    /// One iteration; what leaves over the rim: water and rock, m of a cell.
-    fn iterate(&mut self, bed: &mut Bed, ones: &[f32]) -> [f64; 2] {
-        let (grid, law) = (self.grid, Law { sea_m: bed.sea_m, locked: bed.locked, ..self.law });
+    /// One iteration; what leaves over the rim: water and rock, m of a cell. Where it is `seen`, notes what passes cells.
+    fn iterate(&mut self, bed: &mut Bed, ones: &[f32], seen: bool) -> [f64; 2] {
+        let (grid, law) = (self.grid, self.law.over(bed));
         let (width, stride) = (grid.width, grid.width + 2);
         rim::level(&mut self.level, &grid, bed);
+        if seen {
+            self.passed.copy_from_slice(&self.water);
+        }
 
         let level = &self.level;
         let flow = self.flow[stride..stride * (grid.height + 1)].par_chunks_exact_mut(stride);
@@ -111,6 +123,9 @@ impl HydraulicCells {
             },
         );
 
+        if seen {
+            self.passed.iter_mut().zip(&self.water).for_each(|(passed, left)| *passed -= left);
+        }
         rim::wrap(&mut self.flow, &grid);
         rim::wrap(&mut self.drift, &grid);
         let left = rim::left(&self.level, &self.flow, &self.drift, &grid);
@@ -141,11 +156,8 @@ impl Family for HydraulicCells {
         let ones = vec![1.0; self.grid.width];
         let mut rock = 0.0;
         self.begin(bed);
-        for _ in from..to {
-            rock += self.iterate(bed, &ones)[1];
-        }
-        if part.step + 1 >= part.steps {
-            self.water.fill(0.0);
+        for k in from..to {
+            rock += self.iterate(bed, &ones, k + 1 == to)[1];
         }
         let rain = (to - from) as f64 * self.law.rain_m as f64 * self.grid.cells() as f64;
         Moved {
@@ -156,22 +168,34 @@ impl Family for HydraulicCells {
     }
 
     fn carried_m3(&self) -> f64 {
-        sum_f64(&self.load) * self.grid.cell_area_m2()
+        let width = self.grid.width;
+        sum_rows(self.grid.height, |y| self.load[y * width..][..width].iter().sum()) * self.grid.cell_area_m2()
     }
 
     fn settle(&mut self, bed: &mut Bed) -> Moved {
-        self.water.fill(0.0);
-        leftover::lay_all(bed, &mut self.load);
+        let mut rounded = 0.0;
+        // What single precision takes from one cell's load it gives to the next.
+        let single = |load: &mut f64| {
+            let wanted = std::mem::take(load) + rounded;
+            rounded = wanted - f64::from(wanted as f32);
+            wanted as f32
+        };
+        let mut rest: Vec<f32> = self.load.iter_mut().map(single).collect();
+        leftover::lay_all(bed, &mut rest);
         Moved::default()
     }
 
     fn save(&self) -> Saved {
-        Saved { fields: vec![("water", self.water.clone()), ("load", self.load.clone())], blob: Vec::new() }
+        let blob = self.load.iter().flat_map(|load| load.to_le_bytes()).collect();
+        Saved { fields: vec![("water", self.water.clone())], blob }
     }
 
-    fn restore(&mut self, field: &dyn Fn(&str) -> Option<Vec<f32>>, _blob: &[u8]) -> Option<()> {
-        let whole = |name| field(name).filter(|values| values.len() == self.grid.cells());
-        (self.water, self.load) = (whole("water")?, whole("load")?);
+    fn restore(&mut self, field: &dyn Fn(&str) -> Option<Vec<f32>>, blob: &[u8]) -> Option<()> {
+        let (words, []) = blob.as_chunks() else { return None };
+        let load: Vec<f64> = words.iter().map(|word| f64::from_le_bytes(*word)).collect();
+        let water = field("water")?;
+        let right = water.len() == self.grid.cells() && load.len() == water.len();
+        (self.water, self.load) = right.then_some((water, load))?;
         Some(())
     }
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::erosion::stage::Lock;
+use crate::erosion::{bed::Coast, stage::Lock};
 use crate::grid::Grid;
 
 use super::passes::Law;
@@ -129,8 +129,9 @@ impl HydraulicCellsParams {
             capacity: f(self.capacity * self.morphological_factor),
             flat: f(self.flat_capacity),
             per_cell: f(1.0 / grid.cell_m),
+            iteration_s: 3600.0 * hours,
             steepness: self.steepness,
-            sea_m: f32::NEG_INFINITY,
+            coast: Coast { sea_m: f32::NEG_INFINITY, margin_m: 0.0 },
             locked: false,
         }
     }

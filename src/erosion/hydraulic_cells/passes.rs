@@ -3,7 +3,11 @@
 //! Their loops have no branch, so that they run in whatever vectors a processor has. All widths do the same arithmetic
 //! in the same order: the same bits.
 
-use super::{params::Steepness, rim::DIAGONAL};
+use super::{
+    super::bed::{Bed, Coast},
+    params::Steepness,
+    rim::DIAGONAL,
+};
 
 /// Depth below which a ratio to it means nothing, m.
 const DRY: f32 = 1e-20;
@@ -31,12 +35,21 @@ pub struct Law {
     pub flat: f32,
     /// 1 / cell, 1/m.
     pub per_cell: f32,
+    /// How long it takes, s.
+    pub iteration_s: f64,
     /// Which slopes resist.
     pub steepness: Steepness,
-    /// The sea, m.
-    pub sea_m: f32,
+    /// The sea, and how far heights stay from it.
+    pub coast: Coast,
     /// Whether land stays land, and sea sea.
     pub locked: bool,
+}
+
+impl Law {
+    /// The same over a bed.
+    pub fn over(self, bed: &Bed) -> Self {
+        Self { coast: Coast { sea_m: bed.sea_m, margin_m: bed.margin_m }, locked: bed.locked, ..self }
+    }
 }
 
 /// A row of a ringed raster and the rows beside it: cell `x` is at `x + 1`.
@@ -69,6 +82,14 @@ impl<'a> Around<'a> {
             cut(self.south, 2),
         ]
     }
+}
+
+/// The sum of what passes to or from the eight neighbours, in the same order. What one cell gives is to the bit what others
+/// take, and in double precision the sums of both are as good as exact.
+#[inline(always)]
+fn whole(parts: [f32; 8]) -> f64 {
+    let [n, w, e, s, nw, ne, sw, se] = parts.map(f64::from);
+    ((n + s) + (w + e)) + ((nw + se) + (ne + sw))
 }
 
 /// Sums over the four neighbours across a side and the four across a corner, opposite ones first, so that turned and
@@ -110,18 +131,18 @@ macro_rules! widest {
 
 widest! {
     /// What leaves a row: `flow` and `drift` get water and load by unit of weighted fall; `water` and `load` lose them.
-    leave = leave_body(level: Around, flow: &mut [f32], drift: &mut [f32], water: &mut [f32], load: &mut [f32])
+    leave = leave_body(level: Around, flow: &mut [f32], drift: &mut [f32], water: &mut [f32], load: &mut [f64])
 }
 
 widest! {
     /// What arrives in a row, dries up, is laid down, rains and is dissolved. `around` holds level, flow and drift,
     /// `ground` the heights at the start and the rates.
     arrive = arrive_body(law: &Law, around: [Around; 3], ground: [&[f32]; 2], next: &mut [f32], water: &mut [f32],
-        load: &mut [f32], change: &mut [f32])
+        load: &mut [f64], change: &mut [f32])
 }
 
 #[inline(always)]
-pub fn leave_body(level: Around, flow: &mut [f32], drift: &mut [f32], water: &mut [f32], load: &mut [f32]) {
+pub fn leave_body(level: Around, flow: &mut [f32], drift: &mut [f32], water: &mut [f32], load: &mut [f64]) {
     let width = water.len();
     let (flow, drift, load) = (&mut flow[..width], &mut drift[..width], &mut load[..width]);
     let (here, near) = (&level.here[1..][..width], level.eight(width));
@@ -136,11 +157,17 @@ pub fn leave_body(level: Around, flow: &mut [f32], drift: &mut [f32], water: &mu
         let above = (side + corner) / lower;
         let out = water[x].min(above);
         let by_fall = out / (side + corner * DIAGONAL).max(DRY);
-        let laden = load[x] / water[x].max(DRY);
+        let laden = load[x] as f32 / water[x].max(DRY);
+        let by_load = by_fall * laden;
+        let mut given = [0.0; 8];
+        for k in 0..8 {
+            let part = if k < 4 { 1.0 } else { DIAGONAL };
+            given[k] = by_load * (falls[k] * part);
+        }
         flow[x] = by_fall;
-        drift[x] = by_fall * laden;
+        drift[x] = by_load;
         water[x] -= out;
-        load[x] -= out * laden;
+        load[x] -= whole(given);
     }
 }
 
@@ -151,7 +178,7 @@ pub fn arrive_body(
     ground: [&[f32]; 2],
     next: &mut [f32],
     water: &mut [f32],
-    load: &mut [f32],
+    load: &mut [f64],
     change: &mut [f32],
 ) {
     // The choice is made once a row, not once a cell.
@@ -172,7 +199,7 @@ fn arrive_with(
     ground: [&[f32]; 2],
     next: &mut [f32],
     water: &mut [f32],
-    load: &mut [f32],
+    load: &mut [f64],
     change: &mut [f32],
     soft: impl Fn(f32) -> f32,
 ) {
@@ -181,7 +208,7 @@ fn arrive_with(
     let [start, rate] = ground.map(|data| &data[..width]);
     let here = &around[0].here[1..][..width];
     let [level, flow, drift] = around.map(|data| data.eight(width));
-    let free = if law.locked { 0.0 } else { f32::INFINITY };
+    let (coast, free) = (law.coast, if law.locked { 0.0 } else { f32::INFINITY });
     for x in 0..width {
         let (mut wets, mut rocks, mut rises, mut fall, mut above) = ([0.0; 8], [0.0; 8], [0.0f32; 8], 0.0f32, 0.0f32);
         for k in 0..8 {
@@ -194,34 +221,34 @@ fn arrive_with(
             fall = fall.max(-rise);
             above = above.max(if flow[k][x] > 0.0 { down } else { 0.0 });
         }
-        let [wet, rock] = [wets, rocks].map(|parts| {
-            let [side, corner] = sides_and_corners(parts);
-            side + corner
-        });
+        let [side, corner] = sides_and_corners(wets);
+        let wet = side + corner;
         // The lower bank across the way, whichever that is.
         let [n, w, e, s, nw, ne, sw, se] = rises;
         let banks = n.min(s).max(w.min(e)).max(nw.min(se).max(ne.min(sw)));
         let open = (1.0 - banks * law.per_cell / BANKS).clamp(0.0, 1.0);
         let height = start[x] + change[x];
-        let sea = height < law.sea_m;
+        let sea = height < coast.sea_m;
         let slope = fall * law.per_cell;
         let cos = 1.0 / (1.0 + slope * slope).sqrt();
         let wet = (water[x] + wet) * law.kept;
-        let rock = load[x] + rock;
+        let all = load[x] + whole(rocks);
+        let rock = all as f32;
         let can = law.capacity * wet * (law.flat + (1.0 - law.flat) * slope * cos);
         let wet = if sea { 0.0 } else { wet + law.rain_m };
         // No higher than the water, and than half the way to where it comes from.
         let laid = if sea { rock } else { (rock - can).max(0.0).min(wet + FILL * above) };
         let taken = (law.dissolved * wet * soft(cos) * open).min(CUT * fall);
-        let room = free.max(0.5 * (height - law.sea_m).abs());
+        let room = free.max(coast.room(height));
         let moves = ((laid - taken) * rate[x]).max(-room).min(room);
         let changed = change[x] + moves;
         // Half the way may round to the whole.
-        let crosses = sea != (start[x] + changed < law.sea_m);
+        let crosses = coast.crosses(height, start[x] + changed);
         let changed = if law.locked & crosses { change[x] } else { changed };
-        load[x] = rock - (changed - change[x]);
+        // What single precision rounds away of the bed stays in the water.
+        load[x] = all - (f64::from(changed) - f64::from(change[x]));
         change[x] = changed;
         water[x] = wet;
-        next[x] = (start[x] + changed).max(law.sea_m) + wet;
+        next[x] = (start[x] + changed).max(coast.sea_m) + wet;
     }
 }

@@ -4,7 +4,7 @@ use super::{HydraulicCells, HydraulicCellsParams};
 use crate::{
     erosion::{
         bed::Bed,
-        stage::{FamilyParams, Lock, Stage, clocks},
+        stage::{FamilyParams, Lock, Stage, cell_size, clocks, peak},
     },
     grid::{Field, Grid},
     noise::Key,
@@ -22,7 +22,8 @@ impl HydraulicCellsParams {
 impl FamilyParams for HydraulicCellsParams {
     type Solver = HydraulicCells;
     const WRITES: &'static [Layer] =
-        &[Layer::Bedrock, Layer::Lava, Layer::Sediment, Layer::Water, Layer::Wear, Layer::Deposit];
+        &[Layer::Bedrock, Layer::Lava, Layer::Sediment, Layer::Water, Layer::Wear, Layer::Deposit, Layer::Flow];
+    const PEAKS: &'static [Layer] = &[Layer::Flow];
     const WATER: bool = true;
     const STEPS: u64 = 50;
 
@@ -38,8 +39,9 @@ impl FamilyParams for HydraulicCellsParams {
         HydraulicCellsParams::check(self, grid)
     }
 
-    fn remarks(&self, _grid: &Grid) -> Vec<String> {
-        vec![clocks(self.duration_h, self.elapsed_yr(), self.morphological_factor)]
+    fn remarks(&self, grid: &Grid) -> Vec<String> {
+        let clocks = clocks(self.duration_h, self.elapsed_yr(), self.morphological_factor);
+        cell_size(grid, 1.0, 1000.0).into_iter().chain([clocks]).collect()
     }
 
     fn solver(&self, bed: &Bed, world: &World, _key: Key) -> Result<HydraulicCells, ProcessError> {
@@ -49,5 +51,6 @@ impl FamilyParams for HydraulicCellsParams {
 
     fn show(&self, solver: &HydraulicCells, bed: &Bed, world: &mut World) {
         world.set_layer(Layer::Water, Field { grid: bed.grid, data: solver.water().to_vec() });
+        peak(world, Layer::Flow, &solver.discharge());
     }
 }

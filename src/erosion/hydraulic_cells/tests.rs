@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::*;
+use super::{super::bed::Coast, *};
 use crate::{
     grid::{Edges, Field},
     noise::{Fbm, Key},
@@ -13,7 +13,7 @@ fn bed(grid: Grid, f: impl Fn(f64, f64) -> f64 + Sync) -> Bed {
         let [x, y] = grid.center_m(x, y);
         f(x, y) as f32
     });
-    Bed { grid, change: vec![0.0; grid.cells()], start: start.data, rate: Vec::new(), sea_m: -1e5, locked: false }
+    Bed { sea_m: -1e5, ..Bed::new(grid, start.data) }
 }
 
 fn hills(size: usize, cell_m: f64, edges: Edges) -> Bed {
@@ -65,8 +65,27 @@ fn rock_is_kept_whatever_the_rim() {
         let after = error(&bed, cells.carried_m3());
         assert!(after.abs() < 1e-6, "{edges:?}: {after:e} after it settled");
         assert_eq!(moved.rock_left_m3 > 0.0, edges == Edges::Open, "{edges:?}");
-        assert!((moved.water_in_m3 / moved.water_left_m3 - 1.0).abs() < 1e-12);
+        // What has not left stands on the ground, and goes on to.
+        let stands = sum(&cells.water) * area;
+        assert!(stands > 0.0 && ((moved.water_left_m3 + stands) / moved.water_in_m3 - 1.0).abs() < 1e-9);
+        assert!(cells.discharge().iter().all(|&q| q >= 0.0) && cells.discharge().iter().any(|&q| q > 0.01));
     }
+}
+
+/// Fast water passes its load through a thousand cells: in single precision alone, that lost 7e-6 of what it moved.
+#[test]
+fn rock_is_kept_however_far_it_goes() {
+    let mut bed = hills(64, 8.0, Edges::Open);
+    let params = HydraulicCellsParams {
+        flow_m_per_s: 10.0,
+        morphological_factor: 1000.0,
+        duration_h: 1.0,
+        ..Default::default()
+    };
+    let (moved, _) = run(&params, &mut bed, 4);
+    let worked: f64 = bed.change.iter().map(|v| v.abs() as f64).sum();
+    let error = sum(&bed.change) + moved.rock_left_m3 / bed.grid.cell_area_m2();
+    assert!(worked > 1.0 && error.abs() < 1e-10 * worked, "{error:e} of {worked:e}");
 }
 
 #[test]
@@ -75,7 +94,6 @@ fn a_closed_bowl_holds_what_rains_less_what_dries_up() {
     let mut bed = bed(grid, |x, y| 0.002 * ((x - 120.0).powi(2) + (y - 120.0).powi(2)));
     let params = storm(&grid, 401.0);
     let mut cells = HydraulicCells::new(&params, &grid);
-    // All but the last step: at the end of a stage the water is gone.
     let moved = cells.advance(&mut bed, Part { step: 0, steps: 2 });
     let iterations = (moved.water_in_m3 / (cells.law.rain_m as f64 * 48.0 * 48.0 * 25.0)).round();
     assert_eq!(iterations, 201.0);
@@ -83,8 +101,9 @@ fn a_closed_bowl_holds_what_rains_less_what_dries_up() {
     let (rain, kept) = (cells.law.rain_m as f64, cells.law.kept as f64);
     let want = rain * (1.0 - kept.powi(201)) / (1.0 - kept) * 48.0 * 48.0;
     assert!((sum(&cells.water) / want - 1.0).abs() < 1e-5, "{} {want}", sum(&cells.water));
-    let rock = sum(&bed.change) + sum(&cells.load);
-    assert!(rock.abs() < 1e-6 * sum(&cells.load), "{rock:e}");
+    let load: f64 = cells.load.iter().sum();
+    let rock = sum(&bed.change) + load;
+    assert!(rock.abs() < 1e-12 * load, "{rock:e}");
     // The water stands in the middle.
     assert!(cells.water[24 * 48 + 24] > 100.0 * cells.water[2 * 48 + 2]);
 }
@@ -190,16 +209,18 @@ fn every_width_of_vectors_gives_the_same_bits() {
     let [water, load, start, rate] = [2.0, 1.0, 90.0, 1.0].map(|most| some(width, most));
     let grid = Grid { width, height: 1, cell_m: 8.0, edges: Edges::Open };
     let params = HydraulicCellsParams { steepness: Steepness::HardCliffs, ..Default::default() };
-    let law = Law { sea_m: 20.0, locked: true, ..params.law(&grid) };
+    let law = Law { coast: Coast { sea_m: 20.0, margin_m: 0.5 }, locked: true, ..params.law(&grid) };
     let run = |wide: bool| {
         let [mut a, mut b, mut change] = [vec![0.0; width], vec![0.0; width], vec![0.0; width]];
-        let [mut water, mut load] = [water.clone(), load.clone()];
+        let mut water = water.clone();
+        let mut load: Vec<f64> = load.iter().map(|&load| f64::from(load)).collect();
         let leave = if wide { passes::leave } else { passes::leave_body };
         leave(Around::of(&level, 0, stride), &mut a, &mut b, &mut water, &mut load);
         let arrive = if wide { passes::arrive } else { passes::arrive_body };
         let around = [&level, &flow, &drift].map(|data| Around::of(data, 0, stride));
         arrive(&law, around, [&start, &rate], &mut a, &mut water, &mut load, &mut change);
-        [a, b, change, water, load].concat().iter().map(|v| v.to_bits()).collect::<Vec<_>>()
+        let load = load.iter().map(|v| v.to_bits());
+        [a, b, change, water].concat().iter().map(|v| u64::from(v.to_bits())).chain(load).collect::<Vec<_>>()
     };
     assert!(run(true) == run(false));
 }
@@ -210,10 +231,12 @@ fn land_stays_land_and_the_sea_takes_what_comes() {
     bed.sea_m = 300.0;
     let mut free = bed.clone();
     let params = HydraulicCellsParams { morphological_factor: 1e5, ..storm(&bed.grid, 300.0) };
-    bed.locked = true;
+    (bed.locked, bed.margin_m) = (true, 0.01);
     run(&params, &mut bed, 3);
     let land = |bed: &Bed, i: usize| bed.height(i) >= bed.sea_m;
     assert!((0..bed.start.len()).all(|i| land(&bed, i) == (bed.start[i] >= 300.0)));
+    // Nor does any height come nearer than the margin.
+    assert!((0..bed.start.len()).all(|i| bed.change[i] == 0.0 || (bed.height(i) - 300.0).abs() >= 0.009));
     let sea: f64 = (0..bed.start.len()).filter(|&i| bed.start[i] < 300.0).map(|i| bed.change[i] as f64).sum();
     assert!(sea > 1.0, "the sea took {sea} m");
     run(&params, &mut free, 3);
@@ -284,13 +307,25 @@ proptest! {
         factor_log in -2.0f64..6.0,
         rates in (0.0f64..1000.0, 0.01f64..10.0, 0.0f64..1000.0, 0.0f64..1.0, 0.0f64..1.0, 0.0f64..1.0),
         steepness in prop::sample::select(vec![Steepness::Even, Steepness::HardCliffs, Steepness::SoftCliffs]),
-        locked: bool,
+        (locked, kind, shared) in (any::<bool>(), 0u8..3, any::<bool>()),
         seed: u64,
     ) {
         let grid = Grid { width: size.0, height: size.1, cell_m: 10f64.powf(cell_log), edges };
         let mut stream = Key::new(seed).stream();
-        let start = (0..grid.cells()).map(|_| (base + 10f64.powf(rough_log) * stream.unit()) as f32).collect();
-        let mut bed = Bed { grid, start, change: vec![0.0; grid.cells()], rate: Vec::new(), sea_m: base as f32 + 1.0, locked };
+        // Rough ground, a spike, or a pit; heights are counted from the middle of their range.
+        let spike = (stream.unit() * grid.cells() as f64) as usize;
+        let relief = 10f64.powf(rough_log);
+        let datum = (base + 0.5 * relief).round();
+        let start = (0..grid.cells()).map(|i| {
+            let rough = stream.unit();
+            (base + relief * [rough, f64::from(i == spike), f64::from(i != spike)][usize::from(kind)] - datum) as f32
+        });
+        let start: Vec<f32> = start.collect();
+        let mut bed = Bed { sea_m: (base + 1.0 - datum) as f32, locked, margin_m: 1e-4, ..Bed::new(grid, start) };
+        if shared {
+            bed.rate = (0..grid.cells()).map(|_| (1.5 * stream.unit() - 0.25).clamp(0.0, 1.0) as f32).collect();
+        }
+        let before = bed.clone();
         let (rain, flow, drying, dissolving, capacity, flat) = rates;
         let params = HydraulicCellsParams {
             lock: crate::erosion::Lock::None,
@@ -301,6 +336,11 @@ proptest! {
         prop_assert!(bed.change.iter().all(|v| v.is_finite()));
         let worked: f64 = bed.change.iter().map(|v| v.abs() as f64).sum();
         let error = sum(&bed.change) + moved.rock_left_m3 / grid.cell_area_m2();
-        prop_assert!(error.abs() <= 1e-5 * (worked + moved.rock_left_m3 / grid.cell_area_m2()) + 1e-6, "{error:e} of {worked:e}");
+        prop_assert!(error.abs() <= 1e-6 * (worked + moved.rock_left_m3 / grid.cell_area_m2()), "{error:e} of {worked:e}");
+        for i in 0..grid.cells() {
+            prop_assert!(bed.rate(i) > 0.0 || bed.change[i] == 0.0, "a masked cell changed by {}", bed.change[i]);
+            let land = |bed: &Bed| bed.height(i) >= bed.sea_m;
+            prop_assert!(!locked || land(&before) == land(&bed), "{} became {}", before.height(i), bed.height(i));
+        }
     }
 }

@@ -12,7 +12,7 @@ use crate::grid::{Edges, Grid, sum_f64};
 fn bed(width: usize, height: usize, cell_m: f64, edges: Edges, z: impl Fn(usize, usize) -> f32) -> Bed {
     let grid = Grid { width, height, cell_m, edges };
     let start = (0..grid.cells()).map(|i| z(i % width, i / width)).collect();
-    Bed { grid, start, change: vec![0.0; grid.cells()], rate: Vec::new(), sea_m: -1e6, locked: false }
+    Bed { sea_m: -1e6, ..Bed::new(grid, start) }
 }
 
 /// Water alone: no rain, no friction, no exchange with the bed.

@@ -186,7 +186,7 @@ impl Exchange {
         let (old, height) = (bed.change[cell], bed.height(cell));
         let (wanted, room) = (metres + self.rest[cell] as f64, bed.room(height) as f64);
         bed.change[cell] = (old as f64 + wanted.clamp(-room, room)) as f32;
-        if bed.locked && (bed.height(cell) < bed.sea_m) != (height < bed.sea_m) {
+        if bed.coast().is_some_and(|coast| coast.crosses(height, bed.height(cell))) {
             bed.change[cell] = old;
         }
         self.rest[cell] = (wanted - (bed.change[cell] as f64 - old as f64)) as f32;

@@ -1,7 +1,7 @@
 //! The rain as a family of erosion: its steps, its state, and what it shows.
 
 use crate::{
-    grid::{Edges, Field, Grid},
+    grid::{Edges, Field, Grid, sum_f64},
     noise::Key,
 };
 
@@ -30,6 +30,8 @@ pub struct RainParticles {
     rain: Rain,
     /// Heights of particles count from here, m.
     datum_m: f32,
+    /// Depth and discharge at the end of the stage, when its particles lay down what they carried.
+    last: Option<[Field<f32>; 2]>,
 }
 
 /// Particles as they are now, for films and pictures. The order changes from step to step; `born` names them.
@@ -64,6 +66,7 @@ impl RainParticles {
             exchange: Exchange::new(&grid),
             rain: Rain::new(key),
             datum_m: 0.0,
+            last: None,
         })
     }
 
@@ -118,14 +121,28 @@ impl RainParticles {
         self.water.volume_m3()
     }
 
-    /// Depth of the water, m: every particle spread over the cells that it covers.
+    /// Depth of the water, m: every particle spread over the cells that it covers. As the last step of a stage left it, once
+    /// that is over.
     pub fn depth_m(&self) -> Field<f32> {
+        let each = self.water.volume_m3() / self.grid.cell_area_m2();
+        self.last.as_ref().map_or_else(|| self.spread(|_| each), |[depth, _]| depth.clone())
+    }
+
+    /// Water that passes cells, m³/s: what stands on a cell, by the time in which it crosses that. Spread as the depth.
+    pub fn discharge(&self) -> Field<f32> {
+        let (cloud, per_m) = (&self.water.cloud, self.water.volume_m3() / self.grid.cell_m);
+        let along = |i: usize| per_m * libm::hypot(f64::from(cloud.vx[i]), f64::from(cloud.vy[i]));
+        self.last.as_ref().map_or_else(|| self.spread(along), |[_, flow]| flow.clone())
+    }
+
+    /// What each particle has, spread over the cells that it covers.
+    fn spread(&self, each: impl Fn(usize) -> f64) -> Field<f32> {
         let grid = self.grid;
-        let mut depth = vec![0.0f64; grid.cells()];
+        let mut sum = vec![0.0f64; grid.cells()];
         // A particle reaches about as far as its kernel, or a cell.
         let reach = (1.2 * self.water.spacing()).max(grid.cell_m) / grid.cell_m;
-        let (cloud, each) = (&self.water.cloud, self.water.volume_m3() / grid.cell_area_m2());
-        for (&x, &y) in cloud.x.iter().zip(&cloud.y) {
+        let cloud = &self.water.cloud;
+        for (i, (&x, &y)) in cloud.x.iter().zip(&cloud.y).enumerate() {
             let at = [x, y].map(|place| place as f64 / grid.cell_m - 0.5);
             let mut covered = [(0, 0.0); 25];
             let (mut count, mut total) = (0, 0.0);
@@ -142,11 +159,12 @@ impl RainParticles {
                     }
                 }
             }
+            let each = each(i);
             for &(cell, weight) in covered[..count].iter().filter(|_| total > 0.0) {
-                depth[cell] += each * weight / total;
+                sum[cell] += each * weight / total;
             }
         }
-        Field { grid, data: depth.into_iter().map(|depth| depth as f32).collect() }
+        Field { grid, data: sum.into_iter().map(|sum| sum as f32).collect() }
     }
 }
 
@@ -201,6 +219,7 @@ impl Family for RainParticles {
     }
 
     fn settle(&mut self, bed: &mut Bed) -> Moved {
+        self.last = Some([self.depth_m(), self.discharge()]);
         for life in &mut self.water.life_s {
             *life = 0.0;
         }
@@ -215,7 +234,9 @@ impl Family for RainParticles {
         }
         let lost = cull(bed, &mut ground, &mut self.water, &mut self.exchange);
         self.exchange.settle(bed);
-        lost
+        // The water stays where it was.
+        let stays = self.last.as_ref().map_or(0.0, |[depth, _]| sum_f64(&depth.data)) * self.grid.cell_area_m2();
+        Moved { water_left_m3: lost.water_left_m3 - stays, ..lost }
     }
 
     fn save(&self) -> Saved {

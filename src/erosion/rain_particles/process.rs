@@ -4,7 +4,7 @@ use super::{RainParticles, RainParticlesParams};
 use crate::{
     erosion::{
         bed::Bed,
-        stage::{FamilyParams, Lock, Stage, clocks},
+        stage::{FamilyParams, Lock, Stage, clocks, peak},
     },
     grid::Grid,
     noise::Key,
@@ -25,7 +25,8 @@ impl RainParticlesParams {
 impl FamilyParams for RainParticlesParams {
     type Solver = RainParticles;
     const WRITES: &'static [Layer] =
-        &[Layer::Bedrock, Layer::Lava, Layer::Sediment, Layer::Water, Layer::Wear, Layer::Deposit];
+        &[Layer::Bedrock, Layer::Lava, Layer::Sediment, Layer::Water, Layer::Wear, Layer::Deposit, Layer::Flow];
+    const PEAKS: &'static [Layer] = &[Layer::Flow];
     const WATER: bool = true;
     const STEPS: u64 = 100;
 
@@ -52,5 +53,6 @@ impl FamilyParams for RainParticlesParams {
 
     fn show(&self, solver: &RainParticles, _bed: &Bed, world: &mut World) {
         world.set_layer(Layer::Water, solver.depth_m());
+        peak(world, Layer::Flow, &solver.discharge().data);
     }
 }

@@ -11,7 +11,7 @@ use crate::{
 
 fn bed(grid: Grid, height: impl Fn(usize, usize) -> f64) -> Bed {
     let start = (0..grid.cells()).map(|i| height(i % grid.width, i / grid.width) as f32).collect();
-    Bed { grid, start, change: vec![0.0; grid.cells()], rate: Vec::new(), sea_m: -1e9, locked: false }
+    Bed { sea_m: -1e9, ..Bed::new(grid, start) }
 }
 
 fn hill(edges: Edges) -> Bed {
@@ -66,7 +66,7 @@ fn the_books_close() {
 #[test]
 fn land_stays_land_and_sea_stays_sea() {
     let mut bed = hill(Edges::Open);
-    (bed.sea_m, bed.locked) = (19.0, true);
+    (bed.sea_m, bed.locked, bed.margin_m) = (19.0, true, 0.01);
     let below = |bed: &Bed| (0..bed.grid.cells()).map(|i| bed.height(i) < bed.sea_m).collect::<Vec<_>>();
     let before = below(&bed);
     let more = RainParticlesParams { morphological_factor: 100.0, ..params() };
@@ -76,6 +76,8 @@ fn land_stays_land_and_sea_stays_sea() {
     let (off, size) = books(&rain, &bed, moved.rock_left_m3);
     assert!(size > 10.0 && off.abs() < 1e-9 * size);
     assert_eq!(before, below(&bed));
+    // Nor does any height come nearer than the margin.
+    assert!((0..bed.start.len()).all(|i| bed.change[i] == 0.0 || (bed.height(i) - 19.0).abs() >= 0.009));
 }
 
 #[test]
@@ -119,6 +121,74 @@ fn a_slide_ends_at_the_speed_that_friction_allows() {
         let speed = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
         assert!((speed / want - 1.0).abs() < 0.02, "{speed} for {want}");
     }
+}
+
+/// Item 22 of the list in its form for quadratic friction: a layer of water two metres deep slides down a plane. On the bed
+/// `c·u²` balances the weight `g·H·sin α`; above, viscosity lets it be faster, by `g·sin α/ν·(H·z − z²/2)`.
+#[test]
+fn a_layer_of_water_slides_as_friction_and_viscosity_allow() {
+    let grid = Grid::new(90, 16, 90.0, Edges::Open);
+    let (slope, friction) = (0.2f64, 0.3);
+    // A channel: its banks are steep and higher than the water.
+    let bank = |y: usize| if (3..13).contains(&y) { 0.0 } else { 6.0 };
+    let mut bed = bed(grid, |x, y| slope * (90.0 - (x as f64 + 0.5)) + bank(y));
+    let params = RainParticlesParams {
+        rain_mm_per_h: 0.0,
+        lifespan_s: 1e4,
+        acidity_per_s: 0.0,
+        viscosity_m2_per_s: 1.0,
+        friction,
+        duration_min: 7.0 / 60.0,
+        ..params()
+    };
+    let mut rain = RainParticles::new(&params, grid, Key::new(1)).unwrap();
+    for k in 0..80 {
+        let (x, low) = (5.0 + k as f64, slope * (84.5 - k as f64));
+        rain.fill(&bed, [x, 3.0, low], [x + 1.0, 13.0, low + 1.5]);
+    }
+    rain.advance(&mut bed, Part { step: 0, steps: 1 });
+    let seen = rain.seen();
+    let (sine, cosine) = (slope / slope.hypot(1.0), 1.0 / slope.hypot(1.0));
+    // Far from both ends and from the banks.
+    let inside: Vec<usize> = (0..seen.x_m.len())
+        .filter(|&i| (45.0..65.0).contains(&seen.x_m[i]) && (6.0..10.0).contains(&seen.y_m[i]))
+        .collect();
+    let depth = inside.len() as f64 * rain.particle_m3() / (20.0 * 4.0) * cosine;
+    let layer = |low: f64, high: f64| {
+        let over =
+            |i: usize| (f64::from(seen.z_m[i] + seen.datum_m) - slope * (90.0 - f64::from(seen.x_m[i]))) * cosine;
+        let of: Vec<usize> = inside.iter().copied().filter(|&i| (low..high).contains(&over(i))).collect();
+        let mean = |f: &dyn Fn(usize) -> f64| of.iter().map(|&i| f(i)).sum::<f64>() / of.len() as f64;
+        let speed =
+            |i: usize| f64::from(seen.velocity_m_per_s[0][i]) * cosine - f64::from(seen.velocity_m_per_s[2][i]) * sine;
+        (mean(&over), mean(&speed))
+    };
+    let bottom = layer(0.0, 0.45);
+    let want = (GRAVITY * sine * depth / friction).sqrt();
+    let touching: Vec<usize> = inside
+        .iter()
+        .copied()
+        .filter(|&i| (f64::from(seen.z_m[i] + seen.datum_m) - slope * (90.0 - f64::from(seen.x_m[i]))) * cosine < 0.5)
+        .collect();
+    let area = 20.0 * 4.0 / cosine;
+    let stress: f64 = touching
+        .iter()
+        .map(|&i| {
+            let v = f64::from(seen.velocity_m_per_s[0][i]) * cosine - f64::from(seen.velocity_m_per_s[2][i]) * sine;
+            friction / 0.5 * v * v * rain.particle_m3() / area
+        })
+        .sum();
+    println!(
+        "depth {depth:.3} bottom {bottom:?} for {want:.3}; layers {} stress {stress} for {}",
+        touching.len() as f64 * 0.25 / area,
+        GRAVITY * sine * depth
+    );
+    assert!((bottom.1 / want - 1.0).abs() < 0.05, "{} for {want}, {depth} m deep", bottom.1);
+    let top = layer(depth - 0.5, depth + 1.0);
+    let profile = |z: f64| GRAVITY * sine / 1.0 * (depth * z - 0.5 * z * z);
+    let more = profile(top.0) - profile(bottom.0);
+    println!("top {top:?} more {} for {more}", top.1 - bottom.1);
+    assert!(((top.1 - bottom.1) / more - 1.0).abs() < 0.15, "{} for {more}", top.1 - bottom.1);
 }
 
 /// A pool over a world that wraps, settled.
@@ -271,7 +341,7 @@ proptest! {
         (relief, kind, sea, locked) in (-1.0f64..6.0, 0u8..4, 0.0f64..1.0, any::<bool>()),
         (spacing, rain, lifespan, radius) in (0.1f64..1.0, -1.0f64..5.0, 0.0f64..3.0, 0.0f64..1.0),
         (viscosity, tension, restitution, friction) in (-4.0f64..2.0, 0.0f64..10.0, 0.0f64..0.2, -2.3f64..1.0),
-        (capacity, acidity, factor, seed) in (0.0f64..1.0, 0.0f64..100.0, 0.0f64..5.0, any::<u64>()),
+        (capacity, acidity, factor, seed, shared) in (0.0f64..1.0, 0.0f64..100.0, 0.0f64..5.0, any::<u64>(), any::<bool>()),
     ) {
         let ten = |power: f64| libm::pow(10.0, power);
         let grid = Grid::new(width, height, width as f64 * ten(cell), edges);
@@ -284,7 +354,11 @@ proptest! {
             _ => f64::from(x != width / 2 || y != height / 2),
         });
         bed.sea_m = (ten(relief) * (2.0 * sea - 1.0)) as f32;
-        bed.locked = locked;
+        (bed.locked, bed.margin_m) = (locked, 1e-4);
+        if shared {
+            bed.rate = (0..grid.cells()).map(|_| (1.5 * stream.unit() - 0.25).clamp(0.0, 1.0) as f32).collect();
+        }
+        let start = bed.clone();
         let mut params = RainParticlesParams {
             duration_min: 1.0,
             particles: 400.0,
@@ -313,5 +387,10 @@ proptest! {
         let (off, size) = books(&rain, &bed, moved.rock_left_m3);
         prop_assert!(off.abs() <= 1e-6 * (size + moved.rock_left_m3), "{off} of {size}");
         prop_assert!((moved.water_left_m3).is_finite());
+        for i in 0..grid.cells() {
+            prop_assert!(bed.rate(i) > 0.0 || bed.change[i] == 0.0, "a masked cell changed by {}", bed.change[i]);
+            let land = |bed: &Bed| bed.height(i) >= bed.sea_m;
+            prop_assert!(!locked || land(&start) == land(&bed), "{} became {}", start.height(i), bed.height(i));
+        }
     }
 }

@@ -19,15 +19,19 @@ pub(super) fn pass(
     start: &[f32],
     change: &mut [f32],
 ) {
-    match (to_all, terms.sea_m.is_some()) {
-        (false, false) => pass_of::<false, false>(slope, shed, terms, start, change),
-        (false, true) => pass_of::<false, true>(slope, shed, terms, start, change),
-        (true, false) => pass_of::<true, false>(slope, shed, terms, start, change),
-        (true, true) => pass_of::<true, true>(slope, shed, terms, start, change),
+    match (to_all, terms.coast.is_some(), slope.mask.is_some()) {
+        (false, false, false) => pass_of::<false, false, false>(slope, shed, terms, start, change),
+        (false, false, true) => pass_of::<false, false, true>(slope, shed, terms, start, change),
+        (false, true, false) => pass_of::<false, true, false>(slope, shed, terms, start, change),
+        (false, true, true) => pass_of::<false, true, true>(slope, shed, terms, start, change),
+        (true, false, false) => pass_of::<true, false, false>(slope, shed, terms, start, change),
+        (true, false, true) => pass_of::<true, false, true>(slope, shed, terms, start, change),
+        (true, true, false) => pass_of::<true, true, false>(slope, shed, terms, start, change),
+        (true, true, true) => pass_of::<true, true, true>(slope, shed, terms, start, change),
     }
 }
 
-fn pass_of<const ALL: bool, const LOCKED: bool>(
+fn pass_of<const ALL: bool, const LOCKED: bool, const RATE: bool>(
     slope: &mut Slope,
     shed: &mut Raster,
     terms: &Terms,
@@ -36,21 +40,26 @@ fn pass_of<const ALL: bool, const LOCKED: bool>(
 ) {
     let (width, stride) = (slope.grid.width, slope.z.stride());
     {
-        let (z, rate, drop) = (&slope.z, &slope.rate, &slope.drop);
+        let (z, soft, drop) = (&slope.z, &slope.soft, &slope.drop);
         shed.write(|y, out| {
             let rows = [0, 1, 2].map(|k| z.row(y + k));
-            let own = (row_of(drop, y + 1), row_of(rate, y + 1));
-            match (drop.is_some(), rate.is_some()) {
-                (false, false) => sheds::<ALL, false, false>(rows, own, terms, out),
-                (false, true) => sheds::<ALL, false, true>(rows, own, terms, out),
-                (true, false) => sheds::<ALL, true, false>(rows, own, terms, out),
-                (true, true) => sheds::<ALL, true, true>(rows, own, terms, out),
+            let own = (row_of(drop, y + 1), row_of(soft, y + 1));
+            match drop.is_some() {
+                false => sheds::<ALL, false, RATE>(rows, own, terms, out),
+                true => sheds::<ALL, true, RATE>(rows, own, terms, out),
             }
         });
     }
     shed.join(slope.grid.edges);
-    let (z, drop, shed) = (&slope.z, &slope.drop, &*shed);
-    let rows = |y: usize| [0, 1, 2].map(|k| (z.row(y + k), shed.row(y + k), row_of(drop, y + k)));
+    let (z, drop, mask, shed) = (&slope.z, &slope.drop, &slope.mask, &*shed);
+    let rows = |y: usize| {
+        [0, 1, 2].map(|k| Rows {
+            z: z.row(y + k),
+            shed: shed.row(y + k),
+            drop: row_of(drop, y + k),
+            mask: row_of(mask, y + k),
+        })
+    };
     let height = slope.grid.height;
     let next = slope.next.0.data.par_chunks_exact_mut(stride).skip(1).take(height);
     let ground = (next, change.par_chunks_exact_mut(width)).into_par_iter().enumerate();
@@ -60,12 +69,12 @@ fn pass_of<const ALL: bool, const LOCKED: bool>(
             ground.zip((drops, slope.loose.par_chunks_exact_mut(width))).for_each(
                 |((y, (z, change)), (drop, loose))| {
                     let (z, drop) = (&mut z[1..=width], &mut drop[1..=width]);
-                    moves::<ALL, LOCKED, true>(&rows(y), terms, &start[y * width..], z, drop, change, loose);
+                    moves::<ALL, LOCKED, true, RATE>(&rows(y), terms, &start[y * width..], z, drop, change, loose);
                 },
             );
         }
         None => ground.for_each(|(y, (z, change))| {
-            moves::<ALL, LOCKED, false>(
+            moves::<ALL, LOCKED, false, RATE>(
                 &rows(y),
                 terms,
                 &start[y * width..],
@@ -85,6 +94,7 @@ struct Cell {
     z: f32,
     shed: f32,
     stands: f32,
+    mask: f32,
 }
 
 /// How far apart the middles of two neighbours are, cells.
@@ -118,10 +128,12 @@ fn face<const ALL: bool, const LOCKED: bool, const DIAGONALLY: bool>(
     here: Cell,
     there: Cell,
 ) -> (f32, f32) {
-    let give = here.shed * offer::<ALL, DIAGONALLY>(here.z, there.z, here.stands).0;
-    let take = there.shed * offer::<ALL, DIAGONALLY>(there.z, here.z, there.stands).0;
+    // Nothing leaves a mask, nor comes in.
+    let open = here.mask.min(there.mask);
+    let give = here.shed * open * offer::<ALL, DIAGONALLY>(here.z, there.z, here.stands).0;
+    let take = there.shed * open * offer::<ALL, DIAGONALLY>(there.z, here.z, there.stands).0;
     match LOCKED {
-        true => (terms.whole(terms.coast(give, here.z, there.z)), terms.whole(terms.coast(take, there.z, here.z))),
+        true => (terms.whole(terms.keep(give, here.z, there.z)), terms.whole(terms.keep(take, there.z, here.z))),
         false => (terms.whole(give), terms.whole(take)),
     }
 }
@@ -130,13 +142,13 @@ fn face<const ALL: bool, const LOCKED: bool, const DIAGONALLY: bool>(
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn sheds<const ALL: bool, const DROP: bool, const RATE: bool>(
     z: [&[f32]; 3],
-    (drop, rate): (&[f32], &[f32]),
+    (drop, soft): (&[f32], &[f32]),
     terms: &Terms,
     out: &mut [f32],
 ) {
     let n = out.len();
     let z = [&z[0][..n + 2], &z[1][..n + 2], &z[2][..n + 2]];
-    let (drop, rate) = (&drop[..if DROP { n + 2 } else { 0 }], &rate[..if RATE { n + 2 } else { 0 }]);
+    let (drop, soft) = (&drop[..if DROP { n + 2 } else { 0 }], &soft[..if RATE { n + 2 } else { 0 }]);
     for x in 0..n {
         let here = z[1][x + 1];
         let stands = if DROP { drop[x + 1] } else { terms.drop_m[0] };
@@ -156,16 +168,22 @@ fn sheds<const ALL: bool, const DROP: bool, const RATE: bool>(
             most = most.max(excess);
             sum += part;
         }
-        let share = if RATE { terms.share * rate[x + 1] } else { terms.share };
+        let share = if RATE { terms.share * soft[x + 1] } else { terms.share };
         out[x] = if sum > 0.0 { share * most / sum } else { 0.0 };
     }
 }
 
-/// A row's rasters: heights, what is shed a metre, and how far a neighbour may lie below.
-type Rows<'a> = [(&'a [f32], &'a [f32], &'a [f32]); 3];
+/// A row's rasters: heights, what is shed a metre, how far a neighbour may lie below, and the mask.
+struct Rows<'a> {
+    z: &'a [f32],
+    shed: &'a [f32],
+    drop: &'a [f32],
+    mask: &'a [f32],
+}
+
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn moves<const ALL: bool, const LOCKED: bool, const DROP: bool>(
-    rows: &Rows,
+fn moves<const ALL: bool, const LOCKED: bool, const DROP: bool, const RATE: bool>(
+    rows: &[Rows; 3],
     terms: &Terms,
     start: &[f32],
     next: &mut [f32],
@@ -177,15 +195,17 @@ fn moves<const ALL: bool, const LOCKED: bool, const DROP: bool>(
     let own = if DROP { n } else { 0 };
     let (start, change, next) = (&start[..n], &mut change[..n], &mut next[..n]);
     let (next_drop, loose) = (&mut next_drop[..own], &mut loose[..own]);
-    let z = [&rows[0].0[..n + 2], &rows[1].0[..n + 2], &rows[2].0[..n + 2]];
-    let sheds = [&rows[0].1[..n + 2], &rows[1].1[..n + 2], &rows[2].1[..n + 2]];
-    let long = if DROP { n + 2 } else { 0 };
-    let drop = [&rows[0].2[..long], &rows[1].2[..long], &rows[2].2[..long]];
+    let z = [&rows[0].z[..n + 2], &rows[1].z[..n + 2], &rows[2].z[..n + 2]];
+    let sheds = [&rows[0].shed[..n + 2], &rows[1].shed[..n + 2], &rows[2].shed[..n + 2]];
+    let [long, masked] = [DROP, RATE].map(|there| if there { n + 2 } else { 0 });
+    let drop = [&rows[0].drop[..long], &rows[1].drop[..long], &rows[2].drop[..long]];
+    let mask = [&rows[0].mask[..masked], &rows[1].mask[..masked], &rows[2].mask[..masked]];
     for x in 0..n {
         let at = |k: usize, x: usize| Cell {
             z: z[k][x],
             shed: sheds[k][x],
             stands: if DROP { drop[k][x] } else { terms.drop_m[0] },
+            mask: if RATE { mask[k][x] } else { 1.0 },
         };
         let here = at(1, x + 1);
         let faces = [

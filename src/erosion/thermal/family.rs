@@ -1,7 +1,7 @@
 //! Slides over a bed, step by step.
 
 use super::{
-    flux::{Slope, Terms},
+    flux::{Shares, Slope, Terms},
     levels::{Ground, Slide, slide_coarse},
     params::ThermalParams,
 };
@@ -15,8 +15,7 @@ pub struct Thermal {
     params: ThermalParams,
     /// Loose ground when the stage began, then as it is, m.
     loose: Vec<f32>,
-    /// Share of the rate by mask, hardness and height; empty where it is 1 everywhere.
-    rate: Vec<f32>,
+    shares: Shares,
     quantum_m: f32,
     slope: Option<Slope>,
 }
@@ -28,8 +27,8 @@ impl Thermal {
         // No change can be larger than the relief, so that single precision holds 2^23 quanta of it.
         let relief = f64::from(high - low).max(1.0);
         let quantum_m = libm::exp2(libm::ceil(libm::log2(relief)) - 23.0) as f32;
-        let rate = shares(&params, bed);
-        Self { params, loose, rate, quantum_m, slope: None }
+        let shares = shares(&params, bed);
+        Self { params, loose, shares, quantum_m, slope: None }
     }
 
     fn slide(&self, bed: &Bed, part: Part) -> Slide {
@@ -40,20 +39,25 @@ impl Thermal {
             share,
             drop_m: self.params.talus().map(|rise| rise * cell_m),
             quantum_m: self.quantum_m,
-            sea_m: bed.locked.then_some(bed.sea_m),
+            coast: bed.coast(),
         };
         Slide { method: self.params.method, terms, passes }
     }
 }
 
-/// Share of the rate that each cell has.
-fn shares(params: &ThermalParams, bed: &Bed) -> Vec<f32> {
-    if params.hard_rate >= 1.0 {
-        return bed.rate.clone();
+/// Shares of the rate by mask, hardness and height.
+fn shares(params: &ThermalParams, bed: &Bed) -> Shares {
+    let by_height = params.hard_rate < 1.0;
+    if !by_height && bed.rate.is_empty() {
+        return Shares::default();
     }
     let (from, span) = (params.hard_from_m, (params.hard_to_m - params.hard_from_m).max(1e-3));
-    let by_height = |z: f32| 1.0 + (params.hard_rate - 1.0) * smoothstep((f64::from(z - bed.sea_m) - from) / span);
-    bed.start.iter().enumerate().map(|(i, &z)| bed.rate(i) * by_height(z) as f32).collect()
+    let high = |z: f32| 1.0 + (params.hard_rate - 1.0) * smoothstep((f64::from(z - bed.sea_m) - from) / span);
+    let soft = |(i, &z): (usize, &f32)| bed.soft(i) * if by_height { high(z) as f32 } else { 1.0 };
+    Shares {
+        soft: bed.start.iter().enumerate().map(soft).collect(),
+        mask: if bed.mask.is_empty() { vec![1.0; bed.start.len()] } else { bed.mask.clone() },
+    }
 }
 
 impl Family for Thermal {
@@ -64,7 +68,7 @@ impl Family for Thermal {
                 grid: bed.grid,
                 height: bed.start.clone(),
                 loose: self.loose.clone(),
-                rate: self.rate.clone(),
+                shares: self.shares.clone(),
             };
             // The whole stage's passes: what is coarse comes to rest before the fine begins.
             let whole = Slide { passes: slide.passes * part.steps, ..slide };
@@ -75,7 +79,7 @@ impl Family for Thermal {
         }
         let mut slope = self.slope.take().unwrap_or_else(|| {
             let height: Vec<f32> = (0..bed.start.len()).map(|i| bed.height(i)).collect();
-            Slope::new(bed.grid, &height, std::mem::take(&mut self.loose), &self.rate, &slide.terms)
+            Slope::new(bed.grid, &height, std::mem::take(&mut self.loose), &self.shares, &slide.terms)
         });
         slide.run(&mut slope, &bed.start, &mut bed.change);
         self.slope = Some(slope);

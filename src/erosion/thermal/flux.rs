@@ -7,7 +7,10 @@ use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::raster::{BEYOND, Raster};
-use crate::grid::{Edges, Grid};
+use crate::{
+    erosion::bed::Coast,
+    grid::{Edges, Grid},
+};
 
 /// Loose ground of this thickness hides the rock below it, m.
 const COVER_M: f32 = 1.0;
@@ -26,8 +29,8 @@ pub(super) struct Terms {
     pub(super) drop_m: [f32; 2],
     /// Everything moved is a multiple of this power of two, m.
     pub(super) quantum_m: f32,
-    /// Where coasts are locked, the sea, m.
-    pub(super) sea_m: Option<f32>,
+    /// Where land has to stay land, and sea sea.
+    pub(super) coast: Option<Coast>,
 }
 
 impl Terms {
@@ -49,11 +52,27 @@ impl Terms {
     /// What may pass from one height to another where coasts are locked: land gives, and sea takes, no more than leaves
     /// it what it is.
     #[inline(always)]
-    pub(super) fn coast(&self, m: f32, from: f32, to: f32) -> f32 {
-        let Some(sea) = self.sea_m else { return m };
-        let gives = if from > sea { (from - sea) * COAST_SHARE } else { f32::INFINITY };
-        let takes = if to > sea { f32::INFINITY } else { (sea - to) * COAST_SHARE };
+    pub(super) fn keep(&self, m: f32, from: f32, to: f32) -> f32 {
+        let Some(coast) = self.coast else { return m };
+        let gives = if from >= coast.sea_m { coast.free(from) * COAST_SHARE } else { f32::INFINITY };
+        let takes = if to >= coast.sea_m { f32::INFINITY } else { coast.free(to) * COAST_SHARE };
         m.min(gives).min(takes)
+    }
+}
+
+/// Shares of the rate by cell: all of them, or none where they are 1 everywhere.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shares {
+    /// How soft a cell is: what it gives goes by that.
+    pub(super) soft: Vec<f32>,
+    /// Its mask: what passes between two cells goes by the lesser of theirs.
+    pub(super) mask: Vec<f32>,
+}
+
+impl Shares {
+    /// Whether all cells have all of the rate.
+    pub(super) fn none(&self) -> bool {
+        self.mask.is_empty()
     }
 }
 
@@ -66,8 +85,9 @@ pub(super) struct Slope {
     /// How far a neighbour may lie below a cell, m; where loose ground and rock stand at the same angle it is the same
     /// everywhere, and this is empty.
     pub(super) drop: Option<Raster>,
-    /// Share of the rate that a cell has; nothing where all have all of it.
-    pub(super) rate: Option<Raster>,
+    /// How soft cells are, and their mask; nothing where all have all of the rate.
+    pub(super) soft: Option<Raster>,
+    pub(super) mask: Option<Raster>,
     /// Loose ground, m.
     pub(super) loose: Vec<f32>,
     /// The next pass's heights and drops.
@@ -75,8 +95,8 @@ pub(super) struct Slope {
 }
 
 impl Slope {
-    /// Ground of these heights, with so much loose ground on it; `rate` is empty where it is 1 everywhere.
-    pub(super) fn new(grid: Grid, height: &[f32], loose: Vec<f32>, rate: &[f32], terms: &Terms) -> Self {
+    /// Ground of these heights, with so much loose ground on it.
+    pub(super) fn new(grid: Grid, height: &[f32], loose: Vec<f32>, shares: &Shares, terms: &Terms) -> Self {
         let lay = |values: &[f32], beyond: f32| {
             let mut raster = Raster::filled(&grid, beyond);
             raster.write(|y, row| row.copy_from_slice(&values[y * grid.width..][..grid.width]));
@@ -87,13 +107,16 @@ impl Slope {
             let drops: Vec<f32> = loose.iter().map(|&loose| terms.standing(loose)).collect();
             lay(&drops, 0.0)
         });
-        let rate = (!rate.is_empty()).then(|| lay(rate, 0.0));
+        let [soft, mask] = [&shares.soft, &shares.mask].map(|values| {
+            (!shares.none()).then(|| {
+                let mut raster = lay(values, 0.0);
+                raster.join(grid.edges);
+                raster
+            })
+        });
         let next = (z.clone(), drop.clone());
-        let mut slope = Self { grid, z, drop, rate, loose, next };
+        let mut slope = Self { grid, z, drop, soft, mask, loose, next };
         slope.join();
-        if let Some(rate) = &mut slope.rate {
-            rate.join(grid.edges);
-        }
         slope
     }
 
@@ -107,7 +130,7 @@ impl Slope {
 
     /// One pass; adds what each cell gained to `change`. Heights are those at the `start` plus their change.
     pub(super) fn pass(&mut self, terms: &Terms, start: &[f32], change: &mut [f32]) {
-        match (self.drop.is_some(), self.rate.is_some()) {
+        match (self.drop.is_some(), self.mask.is_some()) {
             (false, false) => self.rows::<false, false>(terms, start, change),
             (false, true) => self.rows::<false, true>(terms, start, change),
             (true, false) => self.rows::<true, false>(terms, start, change),
@@ -125,7 +148,7 @@ impl Slope {
 
     fn rows<const DROP: bool, const RATE: bool>(&mut self, terms: &Terms, start: &[f32], change: &mut [f32]) {
         let (width, stride) = (self.grid.width, self.z.stride());
-        let (z, drop, rate) = (&self.z, &self.drop, &self.rate);
+        let (z, drop, soft, mask) = (&self.z, &self.drop, &self.soft, &self.mask);
         let next_drop: &mut [f32] = match &mut self.next.1 {
             Some(raster) => &mut raster.data,
             // A raster that nobody reads needs no second one; this stands in for it.
@@ -133,9 +156,13 @@ impl Slope {
         };
         let height = self.grid.height;
         let body = |y: usize, (z_out, drop_out, change, loose): Out| {
-            let rows =
-                [0, 1, 2].map(|k| Rows { z: z.row(y + k), drop: row_of(drop, y + k), rate: row_of(rate, y + k) });
-            match terms.sea_m {
+            let rows = [0, 1, 2].map(|k| Rows {
+                z: z.row(y + k),
+                drop: row_of(drop, y + k),
+                soft: row_of(soft, y + k),
+                mask: row_of(mask, y + k),
+            });
+            match terms.coast {
                 Some(_) => row::<DROP, RATE, true>(&rows, terms, &start[y * width..], z_out, drop_out, change, loose),
                 None => row::<DROP, RATE, false>(&rows, terms, &start[y * width..], z_out, drop_out, change, loose),
             }
@@ -166,7 +193,8 @@ pub(super) fn row_of(raster: &Option<Raster>, y: usize) -> &[f32] {
 struct Rows<'a> {
     z: &'a [f32],
     drop: &'a [f32],
-    rate: &'a [f32],
+    soft: &'a [f32],
+    mask: &'a [f32],
 }
 
 /// A row as a pass leaves it, without its rim: heights, drops, change and loose ground. Single slices, not a struct of
@@ -179,6 +207,7 @@ struct Cell {
     z: f32,
     drop: f32,
     share: f32,
+    mask: f32,
 }
 
 /// What a cell gives to a neighbour and takes from it, m.
@@ -186,10 +215,12 @@ struct Cell {
 fn face<const LOCKED: bool, const DIAGONALLY: bool>(terms: &Terms, here: Cell, there: Cell) -> (f32, f32) {
     let (apart, per) = if DIAGONALLY { (std::f32::consts::SQRT_2, DIAGONAL) } else { (1.0, 1.0) };
     let fall = here.z - there.z;
-    let give = here.share * per * (fall - apart * here.drop).max(0.0);
-    let take = there.share * per * (-fall - apart * there.drop).max(0.0);
+    // Nothing leaves a mask, nor comes in.
+    let open = here.mask.min(there.mask);
+    let give = here.share * open * per * (fall - apart * here.drop).max(0.0);
+    let take = there.share * open * per * (-fall - apart * there.drop).max(0.0);
     match LOCKED {
-        true => (terms.whole(terms.coast(give, here.z, there.z)), terms.whole(terms.coast(take, there.z, here.z))),
+        true => (terms.whole(terms.keep(give, here.z, there.z)), terms.whole(terms.keep(take, there.z, here.z))),
         false => (terms.whole(give), terms.whole(take)),
     }
 }
@@ -208,7 +239,8 @@ fn row<const DROP: bool, const RATE: bool, const LOCKED: bool>(
     let z: [&[f32]; 3] = [&rows[0].z[..n + 2], &rows[1].z[..n + 2], &rows[2].z[..n + 2]];
     // Rows of known length need no check in the loop.
     let drop: [&[f32]; 3] = [0, 1, 2].map(|k| &rows[k].drop[..if DROP { n + 2 } else { 0 }]);
-    let rate: [&[f32]; 3] = [0, 1, 2].map(|k| &rows[k].rate[..if RATE { n + 2 } else { 0 }]);
+    let soft: [&[f32]; 3] = [0, 1, 2].map(|k| &rows[k].soft[..if RATE { n + 2 } else { 0 }]);
+    let mask: [&[f32]; 3] = [0, 1, 2].map(|k| &rows[k].mask[..if RATE { n + 2 } else { 0 }]);
     let (start, next_z, change) = (&start[..n], &mut next_z[..n], &mut change[..n]);
     let own = if DROP { n } else { 0 };
     let (next_drop, loose) = (&mut next_drop[..own], &mut loose[..own]);
@@ -216,7 +248,8 @@ fn row<const DROP: bool, const RATE: bool, const LOCKED: bool>(
         let at = |k: usize, x: usize| Cell {
             z: z[k][x],
             drop: if DROP { drop[k][x] } else { terms.drop_m[0] },
-            share: if RATE { terms.share * rate[k][x] } else { terms.share },
+            share: if RATE { terms.share * soft[k][x] } else { terms.share },
+            mask: if RATE { mask[k][x] } else { 1.0 },
         };
         let here = at(1, x + 1);
         let faces = [

@@ -1,16 +1,20 @@
 //! Sliding on rasters of larger cells first.
 //!
-//! A level has cells twice as large as the one below. Its ground is the mean of theirs; what it gains is spread back
-//! over them by bilinear weights, sixteenths that make up a whole. A level moves quanta sixteen times as large, so that
-//! every sixteenth is a whole quantum below, and nothing is lost between levels.
+//! A level has half as many cells a side as the one below, rounded up: where that is not a half, its cells are a little
+//! narrower than two. Its ground is the mean of what lies under it; what it gains is spread back over that by the
+//! line through the middles of its cells, in whole quanta, of which none is lost on the way.
 
 use super::{
+    axis::Axis,
     cells,
-    flux::{Slope, Terms},
+    flux::{Shares, Slope, Terms},
     params::ThermalMethod,
     raster::Raster,
 };
-use crate::grid::{Edges, Field, Grid, map_cells};
+use crate::grid::{Edges, Grid, for_each_row, map_cells};
+
+/// Cells a side below which a raster is not halved.
+const LEAST_SIDE: usize = 8;
 
 /// Which form, on a raster of which terms, and how many passes.
 #[derive(Clone, Copy, Debug)]
@@ -37,50 +41,58 @@ impl Slide {
     fn coarser(&self) -> Self {
         let mut slide = *self;
         slide.terms.drop_m = self.terms.drop_m.map(|drop| 2.0 * drop);
-        slide.terms.quantum_m = 16.0 * self.terms.quantum_m;
         slide
     }
 }
 
-/// What lies on a raster: heights, loose ground, and shares of the rate, empty where they are 1 everywhere.
+/// What lies on a raster: heights, loose ground, and shares of the rate.
 pub(super) struct Ground {
     pub(super) grid: Grid,
     pub(super) height: Vec<f32>,
     pub(super) loose: Vec<f32>,
-    pub(super) rate: Vec<f32>,
+    pub(super) shares: Shares,
 }
 
 /// Lets the ground slide on `levels` rasters of larger cells, the coarsest first, and gives what each cell gains.
 pub(super) fn slide_coarse(ground: &Ground, slide: &Slide, levels: u32) -> Vec<f32> {
     let fine = ground.grid;
-    let none = vec![0.0; fine.cells()];
-    // A raster of an odd side has no half.
-    if levels == 0 || !fine.width.is_multiple_of(2) || !fine.height.is_multiple_of(2) || fine.width.min(fine.height) < 8
-    {
-        return none;
+    if levels == 0 || fine.width.min(fine.height) < LEAST_SIDE {
+        return vec![0.0; fine.cells()];
     }
-    let grid = Grid { width: fine.width / 2, height: fine.height / 2, cell_m: 2.0 * fine.cell_m, edges: fine.edges };
-    let mean = |values: &[f32]| blocks(&fine, &grid, values, |[a, b, c, d]| 0.25 * ((a + b) + (c + d)));
-    let rate = match ground.rate.is_empty() {
-        true => Vec::new(),
-        // What is spread reaches the neighbours too: none of them may be held fast.
-        false => around(&grid, &blocks(&fine, &grid, &ground.rate, |[a, b, c, d]| a.min(b).min(c.min(d)))),
+    let wraps = fine.edges == Edges::Wrap;
+    let axes = [fine.width, fine.height].map(|fine| Axis { fine, coarse: fine.div_ceil(2), wraps });
+    let grid = Grid { width: axes[0].coarse, height: axes[1].coarse, cell_m: 2.0 * fine.cell_m, edges: fine.edges };
+    let mean = |values: &[f32]| under(&axes, values, 0.0, |sum, value, weight| sum + weight * value);
+    // What is spread reaches the neighbours too: none of them may be held fast.
+    let least =
+        |values: &[f32]| around(&grid, &under(&axes, values, f32::INFINITY, |least, value, _| least.min(value)));
+    let shares = match ground.shares.none() {
+        true => Shares::default(),
+        false => Shares { soft: least(&ground.shares.soft), mask: least(&ground.shares.mask) },
     };
-    let coarse = Ground { grid, height: mean(&ground.height), loose: mean(&ground.loose), rate };
+    let coarse = Ground { grid, height: mean(&ground.height), loose: mean(&ground.loose), shares };
     let slide_here = slide.coarser();
     let mut change = slide_coarse(&coarse, &slide_here, levels - 1);
     let height: Vec<f32> = coarse.height.iter().zip(&change).map(|(z, gained)| z + gained).collect();
-    let mut slope = Slope::new(grid, &height, coarse.loose.clone(), &coarse.rate, &slide_here.terms);
+    let mut slope = Slope::new(grid, &height, coarse.loose.clone(), &coarse.shares, &slide_here.terms);
     slide_here.run(&mut slope, &coarse.height, &mut change);
-    spread(&fine, &Field { grid, data: change })
+    spread(&axes, &change, slide.terms.quantum_m)
 }
 
-/// `f` of the four cells that make up each cell of a raster half as fine.
-fn blocks(fine: &Grid, grid: &Grid, values: &[f32], f: impl Fn([f32; 4]) -> f32 + Sync + Send) -> Vec<f32> {
-    let mut out = vec![0.0; grid.cells()];
-    map_cells(&mut out, grid.width, |x, y| {
-        let i = fine.index(2 * x, 2 * y);
-        f([values[i], values[i + 1], values[i + fine.width], values[i + fine.width + 1]])
+/// For each cell of a raster half as fine, `f` of the cells that lie under it, one after another, each with its share of the
+/// whole.
+fn under(axes: &[Axis; 2], values: &[f32], first: f32, f: impl Fn(f32, f32, f32) -> f32 + Sync + Send) -> Vec<f32> {
+    let [across, down] = axes;
+    let mut out = vec![0.0; across.coarse * down.coarse];
+    map_cells(&mut out, across.coarse, |x, y| {
+        let columns = across.under(x);
+        let mut all = first;
+        for (y, part) in down.under(y) {
+            for &(x, share) in &columns {
+                all = f(all, values[y * across.fine + x], (part * share) as f32);
+            }
+        }
+        all
     });
     out
 }
@@ -96,20 +108,27 @@ fn around(grid: &Grid, values: &[f32]) -> Vec<f32> {
     out
 }
 
-/// What each of the fine cells gets: nine, three, three and one sixteenth of the four cells around it. Beyond a rim lies
-/// what lies on it.
-fn spread(fine: &Grid, change: &Field<f32>) -> Vec<f32> {
-    let mut out = vec![0.0; fine.cells()];
-    let side = |at: usize| if at.is_multiple_of(2) { -1 } else { 1 };
-    debug_assert!(fine.edges == change.grid.edges || fine.edges != Edges::Wrap);
-    map_cells(&mut out, fine.width, |x, y| {
-        let grid = &change.grid;
-        let (cx, cy) = (x / 2, y / 2);
-        let (bx, by) = (grid.column(cx, side(x)), grid.row(cy, side(y)));
-        let sixteenth = |v: f32| v * (1.0 / 16.0);
-        sixteenth(change.at(cx, cy)) * 9.0
-            + (sixteenth(change.at(bx, cy)) * 3.0 + sixteenth(change.at(cx, by)) * 3.0)
-            + sixteenth(change.at(bx, by))
+/// What each of the fine cells gets of what the coarse ones gained: along rows, along columns, and then in whole quanta. What
+/// rounding leaves is handed on from cell to cell, so that the sum stays what it is: nothing.
+fn spread(axes: &[Axis; 2], change: &[f32], quantum_m: f32) -> Vec<f32> {
+    let [across, down] = axes;
+    let mut wide = vec![0.0; across.fine * down.coarse];
+    for_each_row(&mut wide, across.fine, |y, row| {
+        let of = &change[y * across.coarse..][..across.coarse];
+        across.spread(|k| f64::from(of[k]), |x, v| row[x] = v);
     });
+    // Columns as rows, so that they run side by side.
+    let mut tall = vec![0.0; across.fine * down.fine];
+    for_each_row(&mut tall, down.fine, |x, column| {
+        down.spread(|k| wide[k * across.fine + x], |y, v| column[y] = v);
+    });
+    let per_quantum = 1.0 / f64::from(quantum_m);
+    let (mut out, mut sum, mut given) = (vec![0.0; tall.len()], 0.0, 0.0);
+    for (i, out) in out.iter_mut().enumerate() {
+        sum += tall[i % across.fine * down.fine + i / across.fine] * per_quantum;
+        let now = (sum + 0.5).floor();
+        *out = (now - given) as f32 * quantum_m;
+        given = now;
+    }
     out
 }

@@ -16,6 +16,7 @@
 //! A pass reaches one cell far, so that a slope of `L` cells needs some `L²` of them. `coarse_levels` lets the ground
 //! slide on rasters of cells twice, four times and eight times as large first.
 
+mod axis;
 mod cells;
 mod family;
 mod flux;

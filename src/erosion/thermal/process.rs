@@ -52,6 +52,15 @@ impl FamilyParams for ThermalParams {
         Ok(())
     }
 
+    fn remarks(&self, _grid: &Grid) -> Vec<String> {
+        let idle = self.coarse_levels > 0 && self.lock == Lock::Coast;
+        idle.then(|| {
+            "coarse_levels does nothing with lock = \"coast\": cells on a coast are not taken together".to_owned()
+        })
+        .into_iter()
+        .collect()
+    }
+
     fn solver(&self, bed: &Bed, world: &World, _key: Key) -> Result<Thermal, ProcessError> {
         let loose = world.layer(Layer::Sediment).map_or_else(|| vec![0.0; bed.start.len()], |s| s.data.clone());
         let most = self.weathering.then(|| pace(world)).flatten().map_or(1.0, |pace| pace.most);
