@@ -173,6 +173,19 @@ pub fn lay(bed: &[f32], change: &mut [f32], rest: &mut [f32]) {
     }
 }
 
+/// Puts what came to cells without any rate, by rounding, back to `rest`: they stay to the last bit.
+#[inline(always)]
+pub fn stay(rate: &[f32], old: &[f32], change: &mut [f32], rest: &mut [f32]) {
+    let n = change.len();
+    let (rate, old, rest) = (&rate[..n], &old[..n], &mut rest[..n]);
+    for i in 0..n {
+        let (got, was) = (change[i], old[i]);
+        let kept = select_unpredictable(rate[i] > 0.0, got, was);
+        rest[i] += got - kept;
+        change[i] = kept;
+    }
+}
+
 /// Puts what a locked bed got too much back to `rest`: heights stay clear of the sea's level, or where they were.
 #[inline(always)]
 pub fn hold(rules: &Rules, start: &[f32], ground: &[f32], old: &[f32], change: &mut [f32], rest: &mut [f32]) {

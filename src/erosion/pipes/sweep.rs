@@ -115,13 +115,17 @@ fn row(rules: &Rules, beat: &Beat, map: &mut Map, bench: &mut Bench, y: isize) {
         sediment::keep_level(rules, &line.land[1..], &bench.stands, bed, depth, &mut bench.dried, &mut bench.made);
     }
     let (start, rest) = (&map.still.start[y as usize * w..][..w], &mut rest[to..][..w]);
-    if rules.locked {
+    let rated = !map.still.rate.is_empty();
+    if rated || rules.locked {
         // The row of capacities has served.
         bench.able.copy_from_slice(change);
-        sediment::lay(bed, change, rest);
+    }
+    sediment::lay(bed, change, rest);
+    if rated {
+        sediment::stay(&line.rate[1..], &bench.able, change, rest);
+    }
+    if rules.locked {
         sediment::hold(rules, start, &line.ground[1..], &bench.able, change, rest);
-    } else {
-        sediment::lay(bed, change, rest);
     }
     let came = |i: usize| beat.pace * ((x.water[i] - x.water[i + 1]) + (north.water[i] - south.water[i]));
     let water = [&bench.dried[..w], &bench.made[..w]];
