@@ -22,6 +22,8 @@ pub struct Bench {
     pub speed2: Vec<f32>,
     pub dried: Vec<f32>,
     pub made: Vec<f32>,
+    /// Share of the water that stands.
+    pub stands: Vec<f32>,
     pub soft: Vec<f32>,
 }
 
@@ -38,6 +40,7 @@ impl Bench {
             speed2: row(0.0),
             dried: row(0.0),
             made: row(0.0),
+            stands: row(0.0),
             soft: row(rules.rock_softness),
         }
     }

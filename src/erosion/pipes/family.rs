@@ -2,16 +2,18 @@
 
 use crate::grid::{Grid, for_each_row, sum_f64};
 
-use super::super::bed::{Bed, Family, Moved, Part, Saved};
+use super::super::{
+    bed::{Bed, Family, Moved, Part, Saved},
+    leftover::lay_all,
+};
 use super::{
     advect::{Tracer, mend},
     bench::Bench,
-    flow::hi,
+    flow::{hi, lo},
     momentum::{self, Water},
     params::{Flux, PipesParams, Sediment},
     rows::{Halo, Row, Rows, Still},
-    rules::{Beat, GRAVITY, PIPE_M, Rules, SLIDE, STILL_M, sources},
-    sediment::room,
+    rules::{Beat, FROUDE, GRAVITY, PIPE_M, Rules, SLIDE, STILL_M, sources},
     sweep::{Book, sweep},
 };
 
@@ -50,20 +52,19 @@ impl Pipes {
     /// The solver over a bed; `rain` are weights of the rain by cell.
     pub fn new(params: PipesParams, bed: &Bed, rain: Option<&[f32]>) -> Self {
         let (grid, cells) = (bed.grid, bed.grid.cells());
-        let rules = Rules::new(&params, &grid, bed.sea_m, bed.locked);
+        let mut rules = Rules::new(&params, &grid, bed.sea_m, bed.locked);
+        rules.stay_clear(0.0, bed);
         let source = sources(&params, &grid, rain);
-        let everywhere = (params.rain_mm_per_h / 3.6e6) as f32;
-        let wettest = source.iter().fold(if source.is_empty() { everywhere } else { 0.0 }, |a, &b| hi(b, a));
         let row = || vec![0.0f32; cells];
         let some = |wanted: bool| if wanted { row() } else { Vec::new() };
         let two = |wanted: bool| [some(wanted), some(wanted)];
         let mei = params.flux == Flux::Mei;
         let (soft, momentum) = (params.softening_per_m > 0.0, params.momentum && !mei);
         let depth = (0..cells).map(|i| hi(rules.sea_m - bed.height(i), 0.0)).collect();
-        Self {
+        let mut pipes = Self {
             grid,
             source,
-            wettest,
+            wettest: 0.0,
             courant: 0.9,
             depth,
             load: row(),
@@ -81,7 +82,24 @@ impl Pipes {
             substeps: 0,
             rules,
             params,
+        };
+        pipes.wettest = pipes.wettest(bed);
+        pipes
+    }
+
+    /// Fastest that water on land rises by rain and springs, m/s: in the sea the level is fixed.
+    fn wettest(&self, bed: &Bed) -> f32 {
+        if self.source.is_empty() {
+            return (self.params.rain_mm_per_h / 3.6e6) as f32;
         }
+        let land = (0..self.source.len()).filter(|&i| bed.height(i) >= self.rules.sea_m);
+        land.fold(0.0, |most, i| hi(self.source[i], most))
+    }
+
+    /// Where the sea's level in the world is `level_m`: what is locked keeps so far from it that no rounding crosses it.
+    pub fn at_sea(mut self, level_m: f64, bed: &Bed) -> Self {
+        self.rules.stay_clear(level_m, bed);
+        self
     }
 
     /// With so much water on the land to begin with, m.
@@ -117,6 +135,7 @@ impl Pipes {
             pace: (dt / cell) as f32,
             pull: (dt * GRAVITY as f64 / cell) as f32,
             drag: (4.0 * dt) as f32 * self.rules.rough,
+            steep: (4.0 * dt / cell) as f32 / (FROUDE * FROUDE),
             fastest: (cell / dt) as f32,
             rain_m: (p.rain_mm_per_h / 3.6e6 * wet) as f32,
             source_s: wet as f32,
@@ -190,6 +209,30 @@ impl Pipes {
         self.tracer = Some(tracer);
     }
 
+    /// Takes locked ground out of the margin at the sea's level again; the land has the difference.
+    fn clear(&self, bed: &mut Bed, sea: &[bool]) {
+        let (level, margin) = (self.rules.sea_m, self.rules.margin_m);
+        let mut over = 0.0;
+        for i in 0..sea.len() {
+            let old = bed.change[i];
+            let kept = if sea[i] {
+                lo(old, hi((level - margin) - bed.start[i], lo(old, 0.0)))
+            } else {
+                hi(old, lo((level + margin) - bed.start[i], hi(old, 0.0)))
+            };
+            over += f64::from(old) - f64::from(kept);
+            bed.change[i] = kept;
+        }
+        let room = |i: usize| !sea[i] && bed.rate(i) > 0.0 && bed.height(i) > level + 2.0 * margin;
+        let places: Vec<usize> = if over == 0.0 { Vec::new() } else { (0..sea.len()).filter(|&i| room(i)).collect() };
+        let count = places.len();
+        for (k, i) in places.into_iter().enumerate() {
+            let old = bed.change[i];
+            bed.change[i] = (f64::from(old) + over / (count - k) as f64) as f32;
+            over -= f64::from(bed.change[i]) - f64::from(old);
+        }
+    }
+
     /// Looks for the greatest depth itself, after a test has set depths.
     #[cfg(test)]
     pub(super) fn look(&mut self) {
@@ -251,6 +294,7 @@ impl Family for Pipes {
         let [mut now, end] = part.of(whole);
         let dries = whole * (1.0 - self.params.recession);
         let mut moved = Moved::default();
+        self.wettest = self.wettest(bed);
         while now < end {
             let raining = now < dries;
             let stop = if raining { end.min(dries) } else { end };
@@ -268,20 +312,18 @@ impl Family for Pipes {
     }
 
     fn settle(&mut self, bed: &mut Bed) -> Moved {
-        for i in 0..self.load.len() {
-            let z = bed.height(i);
-            // A locked sea takes no more than it has room for; the rest stays with what is carried.
-            let held = bed.locked && z < self.rules.sea_m;
-            let most = if held { 0.5 * room(&self.rules, z) } else { f32::INFINITY };
-            let laid = (self.rules.factor * self.load[i]).min(most);
-            self.load[i] = hi(self.load[i] - laid / self.rules.factor, 0.0);
-            let whole = bed.change[i] as f64 + laid as f64 + self.rest[i] as f64;
-            bed.change[i] = whole as f32;
-            self.rest[i] = (whole - bed.change[i] as f64) as f32;
+        let factor = self.rules.factor;
+        let mut held: Vec<f32> = self.load.iter().zip(&self.rest).map(|(load, rest)| factor * load + rest).collect();
+        let sea: Vec<bool> = (0..held.len()).map(|i| bed.height(i) < self.rules.sea_m).collect();
+        lay_all(bed, &mut held);
+        if bed.locked {
+            self.clear(bed, &sea);
+        }
+        self.load.fill(0.0);
+        self.rest.fill(0.0);
+        for (i, _) in sea.iter().enumerate().filter(|(_, sea)| **sea) {
             // What rises out of the sea leaves its water there.
-            if z < self.rules.sea_m && bed.height(i) >= self.rules.sea_m {
-                self.depth[i] = 0.0;
-            }
+            self.depth[i] = hi(self.rules.sea_m - bed.height(i), 0.0);
         }
         Moved::default()
     }

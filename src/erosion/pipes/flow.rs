@@ -68,13 +68,13 @@ impl<'a> Sides<'a> {
     }
 }
 
-/// `drag/d^(7/3)`: what friction has to do with a flux.
+/// `drag/d^(7/3)`: what friction has to do with a flux; at least `steep/d²`, so that on steep ground it keeps the flux to
+/// `FROUDE·d·√(g·d)`.
 #[inline(always)]
-fn roughness(drag: f32, deep: f32) -> f32 {
+fn roughness(drag: f32, steep: f32, deep: f32) -> f32 {
     let r = inverse_cbrt(deep);
     let r2 = r * r;
-    let r7 = r2 * r2 * (r2 * r);
-    drag * r7
+    r2 * r2 * r2 * hi(drag * r, steep)
 }
 
 /// The flux after friction: the positive root of `a·q² + q = y`, which is Manning's law where it no longer changes.
@@ -94,7 +94,7 @@ pub fn push(beat: &Beat, sides: Sides, old: &[f32], flux: &mut [f32], rough: &mu
     for i in 0..n {
         let (fall, deep) = sides.fall(i);
         flux[i] = old[i] + beat.pull * deep * fall;
-        rough[i] = roughness(beat.drag, deep);
+        rough[i] = roughness(beat.drag, beat.steep * fall.abs(), deep);
     }
     if beat.drag != 0.0 {
         for i in 0..n {
@@ -117,7 +117,7 @@ pub fn push_apart(beat: &Beat, sides: Sides, old: [&[f32]; 2], ahead: &mut [f32]
         let (fall, deep) = sides.fall(i);
         let gain = beat.pull * deep * fall;
         let (a, b) = (hi(old[0][i] + gain, 0.0), hi(old[1][i] - gain, 0.0));
-        let (free, rough) = (beat.drag == 0.0, roughness(beat.drag, deep));
+        let (free, rough) = (beat.drag == 0.0, roughness(beat.drag, beat.steep * fall.abs(), deep));
         ahead[i] = if free { a } else { rub(a, rough) } * sides.open(i);
         back[i] = if free { b } else { rub(b, rough) } * sides.open(i);
     }

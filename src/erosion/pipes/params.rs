@@ -213,6 +213,16 @@ impl PipesParams {
                 self.duration_h * MOST_STEPS / steps
             ));
         }
+        for (i, spring) in self.springs.iter().enumerate() {
+            let steps = self.steps_of(spring, grid.cell_m);
+            if steps > MOST_STEPS {
+                return Err(format!(
+                    "springs[{i}] wells up so fast on cells of {} m that it takes {steps:.1e} steps of water; lower \
+                     flow_m3_per_s or duration_h, or raise radius_m",
+                    grid.cell_m
+                ));
+            }
+        }
         if self.rain_radius_km > 0.0 {
             let [x, y] = [self.rain_x_km.clamp(0.0, width), self.rain_y_km.clamp(0.0, height)];
             let away = libm::hypot(x - self.rain_x_km, y - self.rain_y_km);
@@ -225,6 +235,17 @@ impl PipesParams {
             }
         }
         Ok(())
+    }
+
+    /// Steps that a spring asks for, about: its water rises until it runs off to all sides as fast as waves.
+    fn steps_of(&self, spring: &Spring, cell_m: f64) -> f64 {
+        let disc = std::f64::consts::PI * spring.radius_m * spring.radius_m;
+        let area = disc.max(cell_m * cell_m);
+        let depth = libm::pow(spring.flow_m3_per_s / (4.0 * area.sqrt() * GRAVITY.sqrt()), 2.0 / 3.0).max(1e-4);
+        // A step is a share of what a wave takes for a cell, and of what the water takes to double.
+        let step_s =
+            (0.64 * cell_m / (GRAVITY * depth).sqrt()).min(0.1 * depth * area / spring.flow_m3_per_s.max(1e-12));
+        3600.0 * self.duration_h * (1.0 - self.recession) / step_s
     }
 
     /// Whether anything is ever rained on or sprung up in a place of its own.

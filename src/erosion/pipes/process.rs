@@ -62,7 +62,8 @@ impl FamilyParams for PipesParams {
             let mean = (sum_f64(&rain.data) / rain.data.len().max(1) as f64) as f32;
             (mean > 0.0).then(|| rain.map(|v| v.max(0.0) / mean))
         });
-        let pipes = Pipes::new(self.clone(), bed, rain.as_ref().map(|rain| &rain.data[..]));
+        let pipes =
+            Pipes::new(self.clone(), bed, rain.as_ref().map(|rain| &rain.data[..])).at_sea(world.sea_level_m, bed);
         match world.layer(Layer::Water) {
             Some(water) => Ok(pipes.on(&water.data)),
             None => Ok(pipes),

@@ -1,8 +1,14 @@
 //! Parameters as the loops want them, and where water comes from.
 
-use crate::grid::{Edges, Grid};
+use crate::{
+    erosion::bed::Bed,
+    grid::{Edges, Grid},
+};
 
-use super::params::{Flux, PipesParams, Sediment};
+use super::{
+    flow::hi,
+    params::{Flux, PipesParams, Sediment},
+};
 
 /// Gravity, m/s².
 pub const GRAVITY: f32 = 9.81;
@@ -12,6 +18,13 @@ pub const PIPE_M: f32 = 1e-4;
 pub const STILL_M: f32 = 1e-3;
 /// Water shallower than this has no say in how long a step may be, m.
 pub const SHEET_M: f32 = 1e-2;
+/// Running water is at most so many times as fast as its waves: steep beds are the rougher (Jarrett 1984; Grant 1997 finds
+/// hardly more than 1).
+pub const FROUDE: f32 = 1.5;
+/// Water stands that is slower than this share of its waves' speed, the more the slower.
+pub const SLOW: f32 = 0.5;
+/// Shallower water is less and less what stands, m: a film goes with its ground.
+pub const POND_M: f32 = 0.5;
 /// Water's surface falls at least this steeply over an open rim.
 pub const RIM_FALL: f32 = 1e-3;
 /// Most rock in a volume of water and rock: beyond it nothing flows like water.
@@ -22,6 +35,8 @@ pub const TIMID: f32 = 0.25;
 pub const STRIDE: f32 = 0.02;
 /// How far above the mean of its neighbours a bed can be and still get sediment, in cells: what lies unevenly evens out.
 pub const BUMP: f32 = 0.005;
+/// Least way from the sea's level of heights that may not cross it, m.
+const LEAST_MARGIN_M: f32 = 1e-4;
 /// Most of an excess that slides over a face in one step; eight faces stay monotone to 0.146.
 pub const SLIDE: f32 = 0.07;
 
@@ -35,6 +50,8 @@ pub struct Rules {
     /// Sea level, m; below everything without a sea.
     pub sea_m: f32,
     pub locked: bool,
+    /// How far from the sea's level heights stay that may not cross it, m.
+    pub margin_m: f32,
     /// g·n², and 1/n or infinity.
     pub rough: f32,
     pub smooth: f32,
@@ -45,6 +62,8 @@ pub struct Rules {
     pub shallow_m: f32,
     pub per_deep: f32,
     pub factor: f32,
+    /// Share of a bed's change that standing water's depth gives or gets, so that its surface stays.
+    pub keep: f32,
     pub rock_softness: f32,
     pub softening: f32,
     /// Fall to a neighbour that loose ground can have, m.
@@ -70,6 +89,7 @@ impl Rules {
             cell_m,
             sea_m: if p.sea { sea_m } else { f32::NEG_INFINITY },
             locked,
+            margin_m: LEAST_MARGIN_M,
             rough: GRAVITY * n * n,
             smooth: if n > 0.0 { 1.0 / n } else { f32::MAX },
             capacity: p.capacity_s_per_m as f32,
@@ -78,6 +98,7 @@ impl Rules {
             shallow_m: p.shallow_m as f32,
             per_deep: (1.0 / (p.deep_m - p.shallow_m).max(1e-3)) as f32,
             factor: p.morphological_factor as f32,
+            keep: (1.0 - 1.0 / p.morphological_factor).max(0.0) as f32,
             rock_softness: p.rock_softness as f32,
             softening: p.softening_per_m as f32,
             talus_m: (grid.cell_m * dry) as f32,
@@ -85,6 +106,13 @@ impl Rules {
             mei: p.flux == Flux::Mei,
             fluxed: p.sediment == Sediment::Flux,
         }
+    }
+
+    /// Keeps locked heights so far from a sea at `level_m` that the sum of a world's layers rounds to the same side.
+    pub fn stay_clear(&mut self, level_m: f64, bed: &Bed) {
+        let most = bed.start.iter().fold(bed.sea_m.abs(), |most, z| hi(z.abs(), most));
+        // Four ulp of the highest column that there may be.
+        self.margin_m = hi(4.0 * f32::EPSILON * (level_m.abs() as f32 + 2.0 * most), LEAST_MARGIN_M);
     }
 
     /// The row of memory that row `y` is, beyond the rim as well.
@@ -107,6 +135,8 @@ pub struct Beat {
     pub pull: f32,
     /// 4·dt·g·n².
     pub drag: f32,
+    /// 4·dt / (cell·FROUDE²), s/m.
+    pub steep: f32,
     /// Fastest that a cell can be crossed, m/s.
     pub fastest: f32,
     /// Rain everywhere, m, where there is no map of it.

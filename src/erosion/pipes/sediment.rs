@@ -4,7 +4,7 @@ use std::hint::select_unpredictable;
 
 use super::{
     flow::{hi, lo},
-    rules::{BUMP, Beat, Rules, SHEET_M, STILL_M, STRIDE, THICKEST, TIMID},
+    rules::{BUMP, Beat, FROUDE, GRAVITY, POND_M, Rules, SHEET_M, SLOW, STILL_M, STRIDE, THICKEST, TIMID},
 };
 
 /// A row of cells before the step. Rows of `ground` and `depth` begin one cell west of the map.
@@ -27,15 +27,16 @@ pub fn ramp(t: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// How far a height is from the sea's, less what rounding may hide.
+/// How far a height is from the margin at the sea's level that it may not enter, m.
 #[inline(always)]
 pub fn room(rules: &Rules, height: f32) -> f32 {
-    hi((height - rules.sea_m).abs() - 4e-7 * (height.abs() + rules.sea_m.abs()), 0.0)
+    hi((height - rules.sea_m).abs() - rules.margin_m, 0.0)
 }
 
 /// What the water of a row does: its depth after the step, and in `able` the sediment that it can carry, m. `speed2` becomes
-/// the square of the speed, m²/s², `dried` the water that dried up, m, `made` what rounding added, and `flux` what passed
-/// over the faces to the west and north. Single slices, so that the compiler knows that none overlap.
+/// the square of the speed, m²/s², `dried` the water that dried up, m, `made` what rounding added, `stands` what share of
+/// it stands rather than runs (below 0 none, above 1 all), and `flux` what passed over the faces to the west and north.
+/// Single slices, so that the compiler knows that none overlap.
 #[inline(always)]
 #[expect(clippy::too_many_arguments)]
 pub fn run(
@@ -47,6 +48,7 @@ pub fn run(
     speed2: &mut [f32],
     dried: &mut [f32],
     made: &mut [f32],
+    stands: &mut [f32],
     flux_x: &mut [f32],
     flux_y: &mut [f32],
 ) {
@@ -57,18 +59,20 @@ pub fn run(
     let (north, south, depth) = (&north[1..][..n], &south[1..][..n], &before.depth[1..][..n]);
     let (qw, qe, qn, qs) = (&before.x[0][..n], &before.x[0][1..][..n], &before.north[0][..n], &before.south[0][..n]);
     let (new_depth, speed2) = (&mut new_depth[..n], &mut speed2[..n]);
-    let (dried, made) = (&mut dried[..n], &mut made[..n]);
+    let (dried, made, stands) = (&mut dried[..n], &mut made[..n], &mut stands[..n]);
     let (flux_x, flux_y) = (&mut flux_x[..n], &mut flux_y[..n]);
-    let fastest2 = beat.fastest * beat.fastest;
+    let (swift, slow) = (FROUDE * FROUDE * GRAVITY, 1.0 / (SLOW * SLOW * GRAVITY));
     let slopes = 0.5 / rules.cell_m;
     for i in 0..n {
         let d1 = depth[i];
         let came = beat.pace * ((qw[i] - qe[i]) + (qn[i] - qs[i]));
         let d2 = hi(d1 + came, 0.0);
-        let per_depth = 1.0 / hi(0.5 * (d1 + d2), STILL_M);
+        let mean = hi(0.5 * (d1 + d2), STILL_M);
+        let per_depth = 1.0 / mean;
         // Squares before the mean: where a stream turns, each face has half of it, and it is as fast as where it is straight.
         let through2 = (qw[i] * qw[i] + qe[i] * qe[i]) + (qn[i] * qn[i] + qs[i] * qs[i]);
-        let v2 = lo(0.5 * through2 * (per_depth * per_depth), fastest2);
+        // Where a front comes to dry ground, depths say little; water is no faster there than elsewhere.
+        let v2 = lo(0.5 * through2 * (per_depth * per_depth), swift * mean);
         let (u, v) = (0.5 * (qw[i] + qe[i]) * per_depth, 0.5 * (qn[i] + qs[i]) * per_depth);
         let (gx, gy) = (slopes * (east[i] - west[i]), slopes * (south[i] - north[i]));
         let g2 = gx * gx + gy * gy;
@@ -82,6 +86,7 @@ pub fn run(
         // What the depth gained and no flux brought: rounding, and the cut at nothing.
         made[i] = (d2 - d1) - came;
         speed2[i] = if d2 > SHEET_M { u * u + v * v } else { 0.0 };
+        stands[i] = lo(d2 * (1.0 / POND_M), 1.0 - slow * v2 * per_depth);
         (flux_x[i], flux_y[i]) = (qw[i], qn[i]);
     }
 }
@@ -126,6 +131,32 @@ pub fn exchange(
     }
 }
 
+/// Keeps the surface of standing water where it is while its bed gets `bed`: what a pond's bed rises too much is counted
+/// with `dried`, what it sinks too much with `made`.
+#[inline(always)]
+pub fn keep_level(
+    rules: &Rules,
+    land: &[f32],
+    stands: &[f32],
+    bed: &[f32],
+    depth: &mut [f32],
+    dried: &mut [f32],
+    made: &mut [f32],
+) {
+    let n = depth.len();
+    let (land, stands, bed) = (&land[..n], &stands[..n], &bed[..n]);
+    let (dried, made) = (&mut dried[..n], &mut made[..n]);
+    for i in 0..n {
+        let had = depth[i];
+        let share = rules.keep * land[i] * lo(hi(stands[i], 0.0), 1.0);
+        let left = hi(had - share * bed[i], 0.0);
+        let gone = had - left;
+        depth[i] = left;
+        dried[i] += hi(gone, 0.0);
+        made[i] += hi(-gone, 0.0);
+    }
+}
+
 /// Adds to a bed what it is to get; `rest` keeps what is too small for the sum. Softness follows.
 #[inline(always)]
 pub fn lay(bed: &[f32], change: &mut [f32], rest: &mut [f32]) {
@@ -139,6 +170,34 @@ pub fn lay(bed: &[f32], change: &mut [f32], rest: &mut [f32]) {
         let back = sum - old;
         rest[i] = (old - (sum - back)) + (add - back);
         change[i] = sum;
+    }
+}
+
+/// Puts what came to cells without any rate, by rounding, back to `rest`: they stay to the last bit.
+#[inline(always)]
+pub fn stay(rate: &[f32], old: &[f32], change: &mut [f32], rest: &mut [f32]) {
+    let n = change.len();
+    let (rate, old, rest) = (&rate[..n], &old[..n], &mut rest[..n]);
+    for i in 0..n {
+        let (got, was) = (change[i], old[i]);
+        let kept = select_unpredictable(rate[i] > 0.0, got, was);
+        rest[i] += got - kept;
+        change[i] = kept;
+    }
+}
+
+/// Puts what a locked bed got too much back to `rest`: heights stay clear of the sea's level, or where they were.
+#[inline(always)]
+pub fn hold(rules: &Rules, start: &[f32], ground: &[f32], old: &[f32], change: &mut [f32], rest: &mut [f32]) {
+    let n = change.len();
+    let (start, ground, old, rest) = (&start[..n], &ground[..n], &old[..n], &mut rest[..n]);
+    for i in 0..n {
+        let (under, got) = (ground[i] < rules.sea_m, change[i]);
+        let top = hi((rules.sea_m - rules.margin_m) - start[i], old[i]);
+        let bottom = lo((rules.sea_m + rules.margin_m) - start[i], old[i]);
+        let kept = if under { lo(got, top) } else { hi(got, bottom) };
+        rest[i] += got - kept;
+        change[i] = kept;
     }
 }
 

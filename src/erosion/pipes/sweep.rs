@@ -25,8 +25,9 @@ use crate::grid::Edges;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Book {
     pub rained: f64,
+    /// Water that dried up, or left ponds whose bed rose.
     pub dried: f64,
-    /// Water that rounding made.
+    /// Water that rounding made, and that ponds got whose bed sank.
     pub made: f64,
     /// Water that went into the sea.
     pub drowned: f64,
@@ -91,26 +92,42 @@ fn row(rules: &Rules, beat: &Beat, map: &mut Map, bench: &mut Bench, y: isize) {
     };
     let soft = if soft.is_empty() { &mut bench.soft[..] } else { &mut soft[to..][..w] };
     let (speed2, dried, made) = (&mut bench.speed2[..], &mut bench.dried[..], &mut bench.made[..]);
-    let able = &mut bench.able[..w];
-    sediment::run(rules, beat, &before, depth, able, speed2, dried, made, out_x, out_y);
+    let (able, stands) = (&mut bench.able[..w], &mut bench.stands[..]);
+    sediment::run(rules, beat, &before, depth, able, speed2, dried, made, stands, out_x, out_y);
     sediment::exchange(rules, beat, &before, able, soft, load, bed);
     if rules.softening > 0.0 {
         sediment::soften(rules, bed, soft);
     }
     if beat.slide > 0.0 {
-        if map.still.rate.is_empty() && !rules.locked {
-            slip::slide(beat.slide, ground, three(|l| &l.talus), bed);
+        let (talus, rate) = (three(|l| &l.talus), three(|l| &l.rate));
+        if rules.locked {
+            slip::slide_locked(beat.slide, ground, talus, rate, three(|l| &l.room), bed);
+        } else if map.still.rate.is_empty() {
+            slip::slide(beat.slide, ground, talus, bed);
         } else {
-            let (rate, room) = (three(|l| &l.rate), three(|l| &l.room));
-            slip::slide_held(beat.slide, ground, three(|l| &l.talus), rate, room, bed);
+            slip::slide_rated(beat.slide, ground, talus, rate, bed);
         }
     }
     if line.sea {
         sea::drop(rules, line, bed, load);
     }
-    sediment::lay(bed, change, &mut rest[to..][..w]);
+    if rules.keep > 0.0 {
+        sediment::keep_level(rules, &line.land[1..], &bench.stands, bed, depth, &mut bench.dried, &mut bench.made);
+    }
+    let (start, rest) = (&map.still.start[y as usize * w..][..w], &mut rest[to..][..w]);
+    let rated = !map.still.rate.is_empty();
+    if rated || rules.locked {
+        // The row of capacities has served.
+        bench.able.copy_from_slice(change);
+    }
+    sediment::lay(bed, change, rest);
+    if rated {
+        sediment::stay(&line.rate[1..], &bench.able, change, rest);
+    }
+    if rules.locked {
+        sediment::hold(rules, start, &line.ground[1..], &bench.able, change, rest);
+    }
     let came = |i: usize| beat.pace * ((x.water[i] - x.water[i + 1]) + (north.water[i] - south.water[i]));
-    let start = &map.still.start[y as usize * w..][..w];
     let water = [&bench.dried[..w], &bench.made[..w]];
     let drowned = sea::level(rules, line, [start, change], water, came, depth);
     if rules.mei {
@@ -132,7 +149,7 @@ fn row(rules: &Rules, beat: &Beat, map: &mut Map, bench: &mut Bench, y: isize) {
     let deepest = if drowned.is_none() { greatest(depth) } else { sea::deepest(rules, start, change, depth) };
     books[at] = Book {
         rained: line.rained,
-        dried: if beat.dry_m > 0.0 { total(&bench.dried) } else { 0.0 },
+        dried: if beat.dry_m + rules.keep > 0.0 { total(&bench.dried) } else { 0.0 },
         made: total(&bench.made),
         drowned: drowned.unwrap_or(0.0),
         spilt: over[0] * beat.pace as f64,

@@ -1,7 +1,10 @@
 //! What the solver must do, against what is known without it.
 
 mod books;
+mod calm;
+mod held;
 mod same;
+mod traced;
 mod waves;
 
 use super::super::bed::{Bed, Family, Moved, Part};

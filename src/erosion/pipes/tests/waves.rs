@@ -33,13 +33,16 @@ fn a_closed_box_keeps_its_water() {
     let before = sum_f64(&pipes.depth);
     let moved = run(&mut pipes, &mut bed, 600.0, false);
     let made = moved.water_in_m3 / 64.0;
-    // Single precision: each cell rounds its depth once a step, up or down alike.
+    // Asked for is 1e-12 a step in double precision. In single precision each cell rounds its depth to 6e-8 of it once a
+    // step, up or down alike: after the 1000 steps here a random walk of 6e-8·√1000 = 2e-6 of a cell, and over 1200 cells a
+    // 35th of that; what rounding made is booked to the last bit besides, so that only the sums' own rounding stays.
     assert!((sum_f64(&pipes.depth) - before - made).abs() < 2e-6 * before, "{}", sum_f64(&pipes.depth) - before);
     assert!(made < 1e-6 * before);
 }
 
-#[test]
-fn a_small_step_runs_at_the_root_of_g_d() {
+/// A step of 4 % of the depth after it has gone a thousand cells either way: where its front is, of the way it should have
+/// gone, and how far the depth between the fronts (over the jump) and the speed there (over that of the theory) are off.
+fn small_step(courant: f64) -> [f64; 3] {
     // A thousand cells, so that the ripples behind the fronts stay near them.
     const REACH: f64 = 10_000.0;
     let (d0, n) = (10.0f32, 3200);
@@ -47,23 +50,30 @@ fn a_small_step_runs_at_the_root_of_g_d() {
     let mut pipes = Pipes::new(still(), &bed, None);
     // A front of a few cells: waves of two cells would stay behind as ripples.
     fill(&mut pipes, &bed, |x| d0 * (1.0 - 0.02 * libm::tanhf((x as f32 + 0.5 - n as f32 / 2.0) / 4.0)));
-    // In one dimension steps may be longer by the root of two, and ripples are then the least.
-    pipes.courant = 0.95 * std::f64::consts::SQRT_2;
+    pipes.courant = courant;
     let c = (9.81 * d0 as f64).sqrt();
-    let t = REACH / c;
-    run(&mut pipes, &mut bed, t, false);
+    run(&mut pipes, &mut bed, REACH / c, false);
     let jump = 0.04 * d0;
     let at = |x: usize| (x as f64 - n as f64 / 2.0 + 0.5) * 10.0;
     let u = pipes.velocity(0);
-    for x in 0..n {
-        if at(x).abs() < 0.7 * REACH {
-            assert!((pipes.depth[x] - d0).abs() < 0.01 * jump, "{x}: {}", pipes.depth[x]);
-            assert!((u[x] as f64 / (0.02 * c) - 1.0).abs() < 0.02, "{x}: {}", u[x]);
-        }
+    let (mut uneven, mut wrong) = (0.0f64, 0.0f64);
+    for x in (0..n).filter(|&x| at(x).abs() < 0.7 * REACH) {
+        uneven = uneven.max(((pipes.depth[x] - d0) / jump).abs() as f64);
+        wrong = wrong.max((u[x] as f64 / (0.02 * c) - 1.0).abs());
     }
     // A front is where half of its change has come.
     let front = (n / 2..n).find(|&x| pipes.depth[x] < d0 - 0.25 * jump).map_or(0.0, at);
-    assert!((front / REACH - 1.0).abs() < 0.03, "{front}");
+    [front / REACH, uneven, wrong]
+}
+
+#[test]
+fn a_small_step_runs_at_the_root_of_g_d() {
+    // In one dimension steps may be longer by the root of two, and ripples are then the least; and as it ships.
+    for courant in [0.95 * std::f64::consts::SQRT_2, 0.9] {
+        let [front, uneven, wrong] = small_step(courant);
+        assert!((front - 1.0).abs() < 0.03, "{courant}: {front}");
+        assert!(uneven < 0.01 && wrong < 0.02, "{courant}: {uneven} {wrong}");
+    }
 }
 
 #[test]
@@ -71,10 +81,10 @@ fn a_standing_wave_has_its_period() {
     let (n, cell, d0) = (64usize, 10.0, 5.0f32);
     let length = n as f64 * cell;
     let wanted = 2.0 * length / (9.81 * d0 as f64).sqrt();
-    let period = |flux| {
+    let period = |flux, courant| {
         let mut bed = bed(n, 1, cell, Edges::Closed, |_, _| 0.0);
         let mut pipes = Pipes::new(PipesParams { flux, ..still() }, &bed, None);
-        pipes.courant = 0.3;
+        pipes.courant = courant;
         fill(&mut pipes, &bed, |x| d0 + 0.01 * libm::cosf(std::f32::consts::PI * (x as f32 + 0.5) / n as f32));
         let (mut now, mut last, mut crossings) = (0.0, 0.01, Vec::new());
         while crossings.len() < 4 {
@@ -88,10 +98,12 @@ fn a_standing_wave_has_its_period() {
         }
         crossings[2] - crossings[0]
     };
-    let ratio = period(Flux::Signed) / wanted;
-    assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
-    let mei = period(Flux::Mei) / wanted;
-    assert!((mei - 0.707).abs() < 0.02, "{mei}");
+    for courant in [0.3, 0.9] {
+        let ratio = period(Flux::Signed, courant) / wanted;
+        assert!((ratio - 1.0).abs() < 0.02, "{courant}: {ratio}");
+        let mei = period(Flux::Mei, courant) / wanted;
+        assert!((mei - 0.707).abs() < 0.02, "{courant}: {mei}");
+    }
 }
 
 #[test]
