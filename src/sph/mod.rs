@@ -8,6 +8,7 @@
 
 mod cells;
 mod cloud;
+mod contact;
 mod forces;
 mod kernel;
 mod neighbours;
@@ -17,6 +18,7 @@ mod wide;
 
 pub use cells::{Cells, Domain};
 pub use cloud::{Cloud, gather};
+pub use contact::Touch;
 pub use forces::{Forces, Liquid};
 pub use kernel::{CubicSpline, DesbrunGascuel, Kernel, Scale, WendlandC2};
 pub use neighbours::Lists;
