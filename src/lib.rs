@@ -7,7 +7,7 @@
 //!   Numerics only.
 //! - [`world`], [`process`]: what all solvers meet through, and what a solver looks like.
 //! - [`crust`]: how high a column of rock floats.
-//! - [`terrain`], [`tectonics`], [`climate`], [`erosion`], [`rivers`], [`edit`]: the stages. They never import each other.
+//! - [`terrain`], [`tectonics`], [`climate`], [`erosion`], [`volcano`], [`rivers`], [`edit`]: the stages. They never import each other.
 //! - [`recipe`], [`timeline`]: a recipe becomes a checked plan, a plan becomes a world.
 //! - [`measure`], [`relief`], [`export`]: numbers, pictures and files of a world.
 //! - `render`: pictures on the graphics adapter (feature `render`).
@@ -35,6 +35,7 @@ pub mod erosion;
 pub mod rivers;
 pub mod tectonics;
 pub mod terrain;
+pub mod volcano;
 
 pub mod recipe;
 pub mod timeline;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::{Diagonal, Domain, Kernel, Lists, RUN, Rubbing, Scale, sum_pairs};
 
-/// Most steps of a solution; what is off then is a share of the change that viscosity makes.
+/// Most steps of a solution: more than lava of any recipe has needed, so that what cannot be solved does not hang.
 const MOST_STEPS: usize = 60;
 
 /// What solving needs besides its answer.
@@ -42,7 +42,7 @@ pub struct Stiff<'a> {
 }
 
 impl Implicit {
-    /// Replaces the velocities before viscosity by those after it, to `tolerance` of what it changes.
+    /// Replaces the velocities before viscosity by those after it, to `tolerance` of what they were.
     pub fn solve<K: Kernel>(&mut self, stiff: &Stiff, lists: &Lists, v: &mut [[f32; 3]], tolerance: f64) {
         let n = v.len();
         let Stiff { scale, domain, place, resist, drag, dt } = *stiff;
@@ -65,10 +65,12 @@ impl Implicit {
         let weighed = |rest: &[[f32; 3]], diagonal: &[[f32; 1]]| {
             sums(n, |i| rest[i].map(|r| f64::from(r) * f64::from(r) / f64::from(diagonal[i][0])))
         };
+        let plain = |v: &[[f32; 3]]| sums(n, |i| v[i].map(|v| f64::from(v) * f64::from(v))).iter().sum::<f64>();
         let mut size = weighed(rest, diagonal);
-        let enough = size.map(|size| tolerance * tolerance * size);
+        let enough = tolerance * tolerance * plain(v);
         *steps = 0;
-        while *steps < MOST_STEPS && (0..3).any(|a| size[a] > enough[a]) {
+        let mut found = plain(rest) <= enough;
+        while *steps < MOST_STEPS && !found {
             *steps += 1;
             sum_pairs(Rubbing::<K>::new(&scale), [place, way], lists, space, rubbed);
             rubbed.par_chunks_mut(RUN).enumerate().for_each(|(r, run)| {
@@ -93,6 +95,16 @@ impl Implicit {
                 }
             }
             size = left;
+            found = plain(rest) <= enough;
+        }
+        if found {
+            // What is left to explain, taken as it is: these are the velocities that the pairs' own forces leave, and those
+            // keep momentum, however far the solution went.
+            for (v, rest) in v.iter_mut().zip(rest) {
+                for a in 0..3 {
+                    v[a] += rest[a];
+                }
+            }
         }
     }
 }

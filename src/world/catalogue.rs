@@ -137,6 +137,12 @@ catalogue! {
     FlowSpeed: "flow_speed", "Speed of storm water", "m/s", [0.0, 10.0], Sequential, Kind::Continuous;
     /// Rock on its way in the water, as a layer of that thickness.
     Suspended: "suspended", "Sediment in the water", "m", [0.0, 0.1], Sequential, Kind::Continuous;
+    /// Depth of lava that flows.
+    MoltenLava: "molten_lava", "Flowing lava", "m", [0.0, 10.0], Sequential, Kind::Continuous;
+    /// Mean temperature at which the lava there froze; 0 where none did.
+    LavaTemperature: "lava_temperature", "Temperature of freezing lava", "degC", [0.0, 1200.0], Sequential, Kind::Continuous;
+    /// When lava last froze there, on the world's clock; 0 where none did.
+    LavaDate: "lava_date", "Date of the lava", "yr", [0.0, 1000000.0], Sequential, Kind::Continuous;
 }
 
 impl Layer {
