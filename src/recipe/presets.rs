@@ -48,6 +48,8 @@ const ALL: &[Preset] = presets! {
     "river-source"
     "rainstorm"
     "volcanic-slope"
+    "eruption"
+    "eruption-as-documented"
 };
 
 /// Every preset.

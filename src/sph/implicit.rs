@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::{Diagonal, Domain, Kernel, Lists, RUN, Rubbing, Scale, sum_pairs};
 
 /// Most steps of a solution: more than lava of any recipe has needed, so that what cannot be solved does not hang.
-const MOST_STEPS: usize = 60;
+const MOST_STEPS: usize = 200;
 
 /// What solving needs besides its answer.
 #[derive(Clone, Debug, Default)]
@@ -65,11 +65,19 @@ impl Implicit {
         let weighed = |rest: &[[f32; 3]], diagonal: &[[f32; 1]]| {
             sums(n, |i| rest[i].map(|r| f64::from(r) * f64::from(r) / f64::from(diagonal[i][0])))
         };
-        let plain = |v: &[[f32; 3]]| sums(n, |i| v[i].map(|v| f64::from(v) * f64::from(v))).iter().sum::<f64>();
+        // What is left to explain, stretched as the last step below stretches it.
+        let stretched = |rest: &[[f32; 3]], diagonal: &[[f32; 1]]| {
+            let squares = sums(n, |i| {
+                let by = f64::from(diagonal[i][0]);
+                rest[i].map(|r| by * f64::from(r) * (by * f64::from(r)))
+            });
+            squares.iter().sum::<f64>()
+        };
         let mut size = weighed(rest, diagonal);
-        let enough = tolerance * tolerance * plain(v);
+        let whole = sums(n, |i| v[i].map(|v| f64::from(v) * f64::from(v)));
+        let enough = tolerance * tolerance * whole.iter().sum::<f64>();
         *steps = 0;
-        let mut found = plain(rest) <= enough;
+        let mut found = stretched(rest, diagonal) <= enough;
         while *steps < MOST_STEPS && !found {
             *steps += 1;
             sum_pairs(Rubbing::<K>::new(&scale), [place, way], lists, space, rubbed);
@@ -95,7 +103,7 @@ impl Implicit {
                 }
             }
             size = left;
-            found = plain(rest) <= enough;
+            found = stretched(rest, diagonal) <= enough;
         }
         if found {
             // What is left to explain, taken as it is: these are the velocities that the pairs' own forces leave, and those

@@ -30,9 +30,9 @@ pub struct Diagonal<K> {
     kernel: PhantomData<K>,
 }
 
-/// Pressure, and the viscosity of Stora and others (1999) as Seed 0's report has it: neighbours' velocities weighed by the
-/// kernel, `α_i·Σ V/n_j·W·(v_j − v_i)` without the particle's own `α_i/(ρ_i)`, which comes as its mark's companion: sums 0 to
-/// 2 are the pressure's, m/s², sums 3 to 5 the velocities'. Marks are `p/n²`, notes `1/n`.
+/// Pressure, and viscosity as Stora and others (1999) have it, who weigh neighbours' velocities by the kernel itself. Sums 0 to
+/// 2 are the pressure's, m/s²; sums 3 to 5 are `Σ V/n_j·W·(v_j − v_i)`, m/s, to be multiplied by the particle's own
+/// `α_i/(ρ·n_i)`: what one gives is not what the other gets where they differ. Marks are `p/n²`, notes `1/n`.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn<K> {
     slope: f32,

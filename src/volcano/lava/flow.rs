@@ -24,6 +24,10 @@ const SKIN: f64 = 0.4;
 const MOST_STEPS: usize = 12;
 /// How much of its speed of sound lava keeps from block to block when it calms down.
 const FADE: f64 = 0.95;
+/// How much stiffer it gets from block to block.
+const GROW: f64 = 1.1;
+/// Speeds and heights over the root of their mean squares that lava is made stiff for.
+const MANY: f64 = 3.0;
 
 /// Particles of lava.
 pub(super) struct Flow {
@@ -154,11 +158,7 @@ impl Flow {
         self.lists.make(&self.cells, &self.cloud, radius);
         let mut setting = self.setting();
         let mut most = self.engine.stand::<K>(&self.cloud, &land.mesh, &setting);
-        let slow = FADE * self.sound;
-        self.sound = self.law.sound(f64::from(most.speed2).sqrt(), f64::from(most.gap)).max(slow);
-        if self.law.params.stiffness_m2_per_s2 > 0.0 {
-            self.sound = self.law.params.stiffness_m2_per_s2.sqrt();
-        }
+        self.tune(&most);
         setting.liquid.sound_m_per_s = self.sound as f32;
         let stiffest = self.stiffen(setting.sharpness_s);
         let half_skin = 0.5 * SKIN * self.law.spacing;
@@ -182,6 +182,30 @@ impl Flow {
         self.cool::<K>(land, &setting, done);
         self.age_s.iter_mut().for_each(|age| *age += done as f32);
         Ok(done)
+    }
+
+    /// Makes lava as stiff as what most of it does needs: a lone drop in the air is no reason. What is stiffer pushes harder
+    /// where it is pressed together already, so that it becomes so by and by.
+    fn tune(&mut self, most: &Most) {
+        let (cloud, gap) = (&self.cloud, &self.engine.gap);
+        let n = cloud.len();
+        let square = |v: f32| f64::from(v) * f64::from(v);
+        let runs: Vec<[f64; 2]> = (0..n.div_ceil(RUN))
+            .into_par_iter()
+            .map(|r| {
+                let mut sums = [0.0; 2];
+                for i in r * RUN..n.min((r + 1) * RUN) {
+                    sums[0] += square(cloud.vx[i]) + square(cloud.vy[i]) + square(cloud.vz[i]);
+                    sums[1] += if gap[i].is_finite() { square(gap[i]) } else { 0.0 };
+                }
+                sums
+            })
+            .collect();
+        let usual = [0, 1].map(|k| (runs.iter().map(|sums| sums[k]).sum::<f64>() / n.max(1) as f64).sqrt());
+        let speed = f64::from(most.speed2).sqrt().min(MANY * usual[0]);
+        let wanted = self.law.sound(speed, f64::from(most.gap).min(MANY * usual[1]));
+        let fixed = self.law.params.stiffness_m2_per_s2 > 0.0 || self.sound == 0.0;
+        self.sound = if fixed { wanted } else { wanted.clamp(FADE * self.sound, GROW * self.sound) };
     }
 
     fn setting(&self) -> Setting {

@@ -12,9 +12,9 @@ const TABLE: &str = "vents";
 /// Layers of sites above each other, at most.
 const LAYERS: usize = 48;
 /// How far a particle comes out beside its site, in spacings.
-const JITTER: f64 = 0.1;
-/// No particle comes out nearer than this to another, in spacings.
-pub(super) const APART: f64 = 0.8;
+const JITTER: f64 = 0.02;
+/// No particle comes out nearer than this to another, in spacings: nearer ones would be blown apart.
+pub(super) const APART: f64 = 0.95;
 /// Most sites of a vent: more room than a crater needs.
 const MOST_SITES: usize = 20_000;
 

@@ -53,7 +53,7 @@ fn nobody_comes_out_too_near_another() {
     own.sources[0].owed = 1e5;
     own.flow.sort();
     own.emit();
-    let (cloud, least) = (&own.flow.cloud, 0.8 * 0.6 - 1e-4);
+    let (cloud, least) = (&own.flow.cloud, 0.95 * 0.6 - 1e-4);
     assert!(cloud.len() > 1000);
     for i in 0..cloud.len() {
         for j in 0..i {
