@@ -39,8 +39,8 @@ pub fn look_around<K: Kernel>(
                 let level = way[0] * way[0] + way[1] * way[1];
                 let slope = weight * K::slope((level + way[2] * way[2]).sqrt() / h);
                 sum.laplacian += f64::from(-2.0 * slope * (thin[i] * thin[j])) * (values[j] - values[i]);
-                for axis in 0..3 {
-                    sum.inward[axis] += slope * way[axis];
+                for (inward, way) in sum.inward.iter_mut().zip(way) {
+                    *inward += slope * way;
                 }
                 sum.covered |= way[2] < 0.0 && level < beside * beside;
             }

@@ -237,8 +237,8 @@ fn particles_that_differ_keep_momentum_and_alike_ones_flow_as_a_liquid() {
         sum_pairs(Flowing::<WendlandC2>::new(&scale), [&place, &flow], &lists, (domain, scale.h_m), &mut out);
         let inside = |i: usize| [cloud.x[i], cloud.y[i], cloud.z[i]].iter().all(|at| (3.0..9.0).contains(at));
         for i in (0..cloud.len()).filter(|&i| inside(i)) {
-            for axis in 0..3 {
-                let (a, b) = (out[i][axis], whole.pull[axis][i]);
+            for (&a, pull) in out[i].iter().zip(&whole.pull) {
+                let b = pull[i];
                 assert!((a - b).abs() < 1e-4 * (1.0 + b.abs()), "{a} {b}");
             }
         }

@@ -128,11 +128,9 @@ pub fn shear_rate(sums: &[f32; 12]) -> f32 {
     };
     let g = [row(0), row(1), row(2)];
     let mut sum = 0.0;
-    for a in 0..3 {
-        for b in 0..3 {
-            let d = g[a][b] + g[b][a];
-            sum += d * d;
-        }
+    for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+        let d: f32 = g[a][b] + g[b][a];
+        sum += d * d;
     }
     (0.5 * sum).sqrt()
 }
