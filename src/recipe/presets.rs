@@ -59,6 +59,8 @@ const ALL: &[Preset] = presets! {
     "raymarched-archipelago"
     "hotspot-chain"
     "shield-flows"
+    "eruption"
+    "eruption-as-documented"
 };
 
 /// Every preset.

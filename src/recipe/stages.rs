@@ -16,7 +16,7 @@ use crate::{
     process::{Placement, Process, ProcessError, Shape},
     rivers::RiversParams,
     tectonics::PlatesParams,
-    volcano::{AshParams, IslandParams, LavaSheetParams, VolcanoParams},
+    volcano::{AshParams, IslandParams, LavaParams, LavaSheetParams, VolcanoParams},
 };
 
 use super::schema;
@@ -164,6 +164,9 @@ fn table() -> Vec<StageKind> {
         }),
         row("droplets", "Droplets", "Droplets run down slopes, cut gullies and lay down fans.", |droplets: DropletsParams, setting| {
             Ok(droplets.process(setting.placement, setting.steps))
+        }),
+        row("lava", "Lava", "Lava wells up, runs down, cools and freezes into the ground.", |lava: LavaParams, setting| {
+            Ok(lava.process(setting.placement, setting.steps))
         }),
         row("uplift", "Uplift", "Sets how fast rock is raised, where and when.", |uplift: UpliftParams, setting| {
             Ok(uplift.process(setting.placement))

@@ -118,7 +118,7 @@ impl Forces {
 }
 
 /// Puts four arrays of one length side by side.
-fn pack(records: &mut Vec<[f32; 4]>, values: [&[f32]; 4]) {
+pub fn pack(records: &mut Vec<[f32; 4]>, values: [&[f32]; 4]) {
     records.resize(values[0].len(), [0.0; 4]);
     records.par_chunks_mut(16 * RUN).enumerate().for_each(|(r, records)| {
         let [a, b, c, d] = values.map(|values| &values[r * 16 * RUN..][..records.len()]);
@@ -129,22 +129,22 @@ fn pack(records: &mut Vec<[f32; 4]>, values: [&[f32]; 4]) {
 }
 
 /// Loops read neighbours without a look at bounds: lists have to be those of the cloud.
-fn check(cloud: &Cloud, lists: &Lists) {
+pub(super) fn check(cloud: &Cloud, lists: &Lists) {
     assert!(cloud.arrays().iter().all(|values| values.len() == lists.particles()));
 }
 
 /// The pairs of a run of particles.
 #[derive(Clone, Copy)]
-struct Pairs<'a> {
-    place: &'a [[f32; 4]],
-    domain: Domain,
-    rows: &'a Rows,
-    first: usize,
+pub(super) struct Pairs<'a> {
+    pub(super) place: &'a [[f32; 4]],
+    pub(super) domain: Domain,
+    pub(super) rows: &'a Rows,
+    pub(super) first: usize,
 }
 
 /// The records of eight neighbours.
 #[inline(always)]
-fn eight<R: Reader>(records: &[[f32; 4]], at: &[u32; LANES]) -> [[f32; LANES]; 4] {
+pub(super) fn eight<R: Reader>(records: &[[f32; 4]], at: &[u32; LANES]) -> [[f32; LANES]; 4] {
     debug_assert!(at.iter().all(|&j| (j as usize) < records.len()));
     // SAFETY: lists are made for as many particles as there are records (`check`), name only these, and cannot be written to
     // from outside.
@@ -153,7 +153,7 @@ fn eight<R: Reader>(records: &[[f32; 4]], at: &[u32; LANES]) -> [[f32; LANES]; 4
 
 /// The sum of eight lanes, always in the same order.
 #[inline(always)]
-fn total(a: [f32; LANES]) -> f32 {
+pub(super) fn total(a: [f32; LANES]) -> f32 {
     let b = [a[0] + a[4], a[1] + a[5], a[2] + a[6], a[3] + a[7]];
     (b[0] + b[2]) + (b[1] + b[3])
 }

@@ -8,18 +8,30 @@
 
 mod cells;
 mod cloud;
+mod contact;
+mod diffuse;
 mod forces;
+mod implicit;
 mod kernel;
 mod neighbours;
+mod scheme;
+mod terms;
 #[cfg(test)]
 mod tests;
+mod viscous;
 mod wide;
 
 pub use cells::{Cells, Domain};
 pub use cloud::{Cloud, gather};
-pub use forces::{Forces, Liquid};
+pub use contact::Touch;
+pub use diffuse::{Around, look_around};
+pub use forces::{Forces, Liquid, pack};
+pub use implicit::{Implicit, Stiff};
 pub use kernel::{CubicSpline, DesbrunGascuel, Kernel, Scale, WendlandC2};
 pub use neighbours::Lists;
+pub use scheme::{Scheme, Weights};
+pub use terms::{Particle, Term, sum_pairs};
+pub use viscous::{Diagonal, Drawn, Flowing, Rubbing, Shear, shear_rate};
 pub use wide::{LANES, Reader, Work, widest};
 
 /// Particles that one task works on: enough to pay for waking a thread, few enough to share out evenly.

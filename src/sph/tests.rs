@@ -217,3 +217,122 @@ fn particles_on_one_place_do_no_harm() {
         assert!(forces.pull.iter().flatten().all(|&a| a == 0.0) && forces.density.iter().all(|n| n.is_finite()));
     }
 }
+
+/// Records for sums over pairs: marks, and notes.
+fn records(cloud: &Cloud, marks: &[f32], notes: &[f32]) -> [Vec<[f32; 4]>; 2] {
+    let (mut place, mut flow) = (Vec::new(), Vec::new());
+    pack(&mut place, [&cloud.x, &cloud.y, &cloud.z, marks]);
+    pack(&mut flow, [&cloud.vx, &cloud.vy, &cloud.vz, notes]);
+    [place, flow]
+}
+
+/// Particles of which one is up to a thousand times as viscous as another, sorted and listed, and `n²/ν` of each.
+fn unlike(domain: Domain) -> (Cloud, Lists, Vec<f32>) {
+    let (cloud, lists) = listed(block(12, 0.2), 2.8, domain);
+    let mut stream = Key::new(8).stream();
+    let resist = (0..cloud.len()).map(|_| libm::pow(10.0, stream.between(-2.0, 1.0)) as f32).collect();
+    (cloud, lists, resist)
+}
+
+#[test]
+fn particles_that_differ_keep_momentum_and_alike_ones_flow_as_a_liquid() {
+    for domain in [Domain::default(), Domain { wrap_m: Some([12.0, 12.0]) }] {
+        let (cloud, lists, resist) = unlike(domain);
+        let scale = liquid::<WendlandC2>().scale;
+        let whole = forces::<WendlandC2>(&cloud, &lists, domain);
+        let [place, flow] = records(&cloud, &whole.push, &resist);
+        let mut out = Vec::new();
+        sum_pairs(Flowing::<WendlandC2>::new(&scale), [&place, &flow], &lists, (domain, scale.h_m), &mut out);
+        for axis in 0..3 {
+            let sum: f64 = out.iter().map(|a| f64::from(a[axis])).sum();
+            let size: f64 = out.iter().map(|a| f64::from(a[axis].abs())).sum();
+            assert!(size > 100.0 && sum.abs() < 1e-6 * size, "{sum} of {size}");
+        }
+        // All of one viscosity on a lattice: what the sums for a liquid give.
+        let (cloud, lists) = listed(block(12, 0.0), 2.8, domain);
+        let plain = Liquid { cohesion_per_s2: 0.0, ..liquid::<WendlandC2>() };
+        let mut whole = Forces::default();
+        whole.densities::<WendlandC2>(&cloud, &lists, domain, &plain, &vec![0.0; cloud.len()]);
+        whole.accelerations::<WendlandC2>(&cloud, &lists, domain, &plain);
+        let resist: Vec<f32> = whole.density.iter().map(|n| n * n / plain.viscosity_m2_per_s).collect();
+        let [place, flow] = records(&cloud, &whole.push, &resist);
+        sum_pairs(Flowing::<WendlandC2>::new(&scale), [&place, &flow], &lists, (domain, scale.h_m), &mut out);
+        let inside = |i: usize| [cloud.x[i], cloud.y[i], cloud.z[i]].iter().all(|at| (3.0..9.0).contains(at));
+        for i in (0..cloud.len()).filter(|&i| inside(i)) {
+            for (&a, pull) in out[i].iter().zip(&whole.pull) {
+                let b = pull[i];
+                assert!((a - b).abs() < 1e-4 * (1.0 + b.abs()), "{a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_solved_for_satisfies_its_equation_and_keeps_momentum() {
+    let domain = Domain::default();
+    let (cloud, lists, resist) = unlike(domain);
+    let scale = liquid::<WendlandC2>().scale;
+    let [place, _] = records(&cloud, &resist, &resist);
+    let before: Vec<[f32; 3]> = (0..cloud.len()).map(|i| [cloud.vx[i], cloud.vy[i], cloud.vz[i]]).collect();
+    for (drag, dt) in [(0.0f32, 0.5f32), (2.0, 5.0)] {
+        let (mut v, drags) = (before.clone(), vec![drag; cloud.len()]);
+        let stiff = Stiff { scale, domain, place: &place, resist: &resist, drag: &drags, dt };
+        let mut implicit = Implicit::default();
+        implicit.solve::<WendlandC2>(&stiff, &lists, &mut v, 1e-3);
+        assert!((2..120).contains(&implicit.steps), "{}", implicit.steps);
+        let flow: Vec<[f32; 4]> = v.iter().zip(&resist).map(|(v, &r)| [v[0], v[1], v[2], r]).collect();
+        let mut rubbed = Vec::new();
+        sum_pairs(Rubbing::<WendlandC2>::new(&scale), [&place, &flow], &lists, (domain, scale.h_m), &mut rubbed);
+        let (mut off, mut size, mut moved) = (0.0, 0.0, [0.0; 3]);
+        for i in 0..v.len() {
+            for axis in 0..3 {
+                let left = before[i][axis] - v[i][axis] - dt * (rubbed[i][axis] + drag * v[i][axis]);
+                off += f64::from(left * left);
+                size += f64::from(before[i][axis] * before[i][axis]);
+                moved[axis] += f64::from(v[i][axis] - before[i][axis]);
+            }
+        }
+        assert!((off / size).sqrt() < 5e-3, "{}", (off / size).sqrt());
+        assert!(drag > 0.0 || moved.iter().all(|moved| moved.abs() < 1e-2), "{moved:?}");
+    }
+}
+
+#[test]
+fn sums_of_terms_have_the_same_bits_on_narrow_registers() {
+    let domain = Domain::default();
+    let run = || {
+        let (cloud, lists, resist) = unlike(domain);
+        let scale = liquid::<WendlandC2>().scale;
+        let [place, flow] = records(&cloud, &resist, &resist);
+        let (mut a, mut b, space) = (Vec::new(), Vec::new(), (domain, scale.h_m));
+        sum_pairs(Shear::<WendlandC2>::new(&scale), [&place, &flow], &lists, space, &mut a);
+        sum_pairs(Drawn::<DesbrunGascuel>::new(&scale), [&place, &flow], &lists, space, &mut b);
+        let bits: Vec<u32> = a.iter().flatten().chain(b.iter().flatten()).map(|v| v.to_bits()).collect();
+        bits
+    };
+    let wide = run();
+    wide::tests::NARROW.store(true, Ordering::Relaxed);
+    let narrow = run();
+    wide::tests::NARROW.store(false, Ordering::Relaxed);
+    assert!(wide == narrow);
+}
+
+#[test]
+fn a_shear_flow_has_its_rate_of_shear() {
+    // v = (2·z, 0, 0): the rate is 2, also beside a surface.
+    let mut cloud = block(12, 0.0);
+    for i in 0..cloud.len() {
+        (cloud.vx[i], cloud.vy[i], cloud.vz[i]) = (2.0 * cloud.z[i], 0.0, 0.0);
+    }
+    let domain = Domain { wrap_m: Some([12.0, 12.0]) };
+    let (cloud, lists) = listed(cloud, 2.8, domain);
+    let scale = liquid::<WendlandC2>().scale;
+    let thin = vec![1.0; cloud.len()];
+    let [place, flow] = records(&cloud, &thin, &thin);
+    let mut sums = Vec::new();
+    sum_pairs(Shear::<WendlandC2>::new(&scale), [&place, &flow], &lists, (domain, scale.h_m), &mut sums);
+    for (i, sums) in sums.iter().enumerate() {
+        let rate = shear_rate(sums);
+        assert!((rate - 2.0).abs() < 1e-3, "{}: {rate}", cloud.z[i]);
+    }
+}

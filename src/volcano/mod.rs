@@ -8,6 +8,7 @@
 pub mod ash;
 mod edifice;
 mod island;
+pub mod lava;
 mod outlet;
 pub mod sheet;
 
@@ -16,6 +17,7 @@ pub use edifice::{
     Arc, Chain, Cone, Edifice, Edifices, Place, Profile, Reader, Roughness, VolcanoEntry, VolcanoParams, Wear,
 };
 pub use island::{IslandEntry, IslandParams, IslandProfile};
+pub use lava::LavaParams;
 pub use sheet::{LavaSheetParams, SheetKey, SheetVent};
 
 use crate::grid::Grid;

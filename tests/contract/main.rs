@@ -116,6 +116,16 @@ const CASES: &[Case] = &[
         params: "steps = 2\npath_m = 3e5\nlock = 'coast'\nmask = 'height > 0'\n",
         may_leave_out: &[Layer::Lava],
     },
+    Case {
+        kind: "lava",
+        params: "steps = 3\nduration_min = 30\nschedule = [{ start_time = 0, duration = 900, particles_per_second = 0.3 }]\ncooling_factor = 3e5\n",
+        may_leave_out: &[Layer::Sediment],
+    },
+    Case {
+        kind: "lava",
+        params: "steps = 2\nduration_min = 10\nschedule = [{ start_time = 0, particles_per_second = 0.3 }]\nfreeze = false\nsettle = false\nground = 'slip'\nyield_pa = 1e6\nvent = [{ at_km = [500, 400], to_km = [600, 450] }]\nmask = 'height > -3000'\n",
+        may_leave_out: &[Layer::Sediment],
+    },
     case("uplift", "mm_per_yr = 0.7\n"),
     case(
         "uplift",

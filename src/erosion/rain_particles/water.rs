@@ -4,11 +4,14 @@ use rayon::prelude::*;
 
 use crate::{
     grid::{Edges, Grid},
-    sph::{Cells, Cloud, Domain, Forces, Kernel, Liquid, Lists, RUN, Reader, Scale, WendlandC2, Work, gather, widest},
+    sph::{
+        Cells, Cloud, Domain, Forces, Kernel, Liquid, Lists, RUN, Reader, Scale, Touch, WendlandC2, Work, gather,
+        widest,
+    },
 };
 
 use super::{
-    contact::{Ground, Touch},
+    contact::Ground,
     params::{GRAVITY, NUMERIC, RATIO, RainParticlesParams, SOUND},
 };
 

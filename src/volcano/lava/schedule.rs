@@ -1,0 +1,134 @@
+//! When how much lava comes out.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A part of the schedule: a rate from a moment on, in particles or in volume.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Key {
+    /// When it begins, after the stage does.
+    #[schemars(range(min = 0.0, max = 1e9), extend("x-unit" = "s"))]
+    pub start_time: f64,
+    /// How long it lasts; to the end of the stage if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1e9), extend("x-unit" = "s"))]
+    pub duration: Option<f64>,
+    /// Particles a second; how much that is depends on their size.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1e9), extend("x-unit" = "1/s"))]
+    pub particles_per_second: Option<f64>,
+    /// Volume a second, whatever the particles' size.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1e18), extend("x-unit" = "m3/s"))]
+    pub m3_per_s: Option<f64>,
+}
+
+impl Key {
+    /// So many particles a second.
+    pub fn particles(start_time: f64, duration: f64, rate: f64) -> Self {
+        Self { start_time, duration: Some(duration), particles_per_second: Some(rate), m3_per_s: None }
+    }
+
+    /// So many cubic metres a second.
+    pub fn volume(start_time: f64, duration: f64, rate: f64) -> Self {
+        Self { start_time, duration: Some(duration), particles_per_second: None, m3_per_s: Some(rate) }
+    }
+
+    /// What is wrong with it, and how to mend it.
+    fn check(&self) -> Result<(), String> {
+        let numbers = [Some(self.start_time), self.duration, self.particles_per_second, self.m3_per_s];
+        if numbers.iter().flatten().any(|n| !n.is_finite() || *n < 0.0) {
+            return Err("start_time, duration and rate must be numbers of at least 0".into());
+        }
+        match (self.particles_per_second, self.m3_per_s) {
+            (Some(_), None) | (None, Some(_)) => Ok(()),
+            (None, None) => Err("it needs a rate: particles_per_second or m3_per_s".into()),
+            (Some(_), Some(_)) => Err("it has two rates; give particles_per_second or m3_per_s".into()),
+        }
+    }
+
+    /// Where it ends, s.
+    fn end(&self) -> f64 {
+        self.start_time + self.duration.unwrap_or(f64::INFINITY)
+    }
+}
+
+/// The whole schedule. Keys may stand in any order, and where several hold their rates add up.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Schedule {
+    keys: Vec<Key>,
+}
+
+impl Schedule {
+    /// Checks keys; an error names the one that is wrong, counted from 1.
+    pub fn new(keys: &[Key]) -> Result<Self, String> {
+        for (i, key) in keys.iter().enumerate() {
+            key.check().map_err(|what| format!("key {} of the schedule: {what}", i + 1))?;
+        }
+        Ok(Self { keys: keys.to_vec() })
+    }
+
+    /// From the text of a JSON file: a list of keys.
+    pub fn from_json(text: &str) -> Result<Self, String> {
+        let keys: Vec<Key> = serde_json::from_str(text)
+            .map_err(|e| format!("is no list of {{ start_time, duration, particles_per_second }}: {e}"))?;
+        Self::new(&keys)
+    }
+
+    /// Particles that come out between two moments, each of `volume_m3`.
+    pub fn particles(&self, from_s: f64, to_s: f64, volume_m3: f64) -> f64 {
+        let of = |key: &Key| {
+            let span = key.end().min(to_s) - key.start_time.max(from_s);
+            let rate = key.particles_per_second.unwrap_or(0.0) + key.m3_per_s.unwrap_or(0.0) / volume_m3;
+            if span > 0.0 { rate * span } else { 0.0 }
+        };
+        self.keys.iter().map(of).sum()
+    }
+
+    /// The next moment after `now_s` at which a rate begins or ends; `None` if that never happens.
+    pub fn next_change(&self, now_s: f64) -> Option<f64> {
+        let ends = self.keys.iter().flat_map(|key| [key.start_time, key.end()]);
+        ends.filter(|&at| at > now_s && at.is_finite()).reduce(f64::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_comes_out_is_the_integral_of_the_rate() {
+        let document = r#"[
+            { "start_time": 0, "duration": 2, "particles_per_second": 3000 },
+            { "start_time": 2, "duration": 10, "particles_per_second": 200 },
+            { "start_time": 15, "duration": 1, "particles_per_second": 3000 }
+        ]"#;
+        let schedule = Schedule::from_json(document).unwrap();
+        assert_eq!(schedule.particles(0.0, 90.0, 1.0), 11_000.0);
+        assert_eq!(schedule.particles(1.5, 2.5, 1.0), 1600.0);
+        assert_eq!(schedule.particles(12.0, 15.0, 1.0), 0.0);
+        let step = |k: i32| schedule.particles(0.07 * k as f64, 0.07 * (k + 1) as f64, 1.0);
+        assert!(((0..300).map(step).sum::<f64>() - 11_000.0).abs() < 1e-6);
+        assert_eq!([0.0, 3.0, 20.0].map(|now| schedule.next_change(now)), [Some(2.0), Some(12.0), None]);
+    }
+
+    #[test]
+    fn keys_may_overlap_stand_in_any_order_and_have_no_end() {
+        let endless = Key { duration: None, ..Key::volume(5.0, 0.0, 2.0) };
+        let schedule =
+            Schedule::new(&[endless, Key::particles(4.0, 4.0, 10.0), Key::particles(0.0, 5.0, 1.0)]).unwrap();
+        // 4 to 5: two keys; 5 to 8: two; 8 to 10: one. Half a cubic metre each.
+        assert_eq!(schedule.particles(4.0, 10.0, 0.5), 1.0 + 40.0 + 20.0);
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        let refused = |json: &str| Schedule::from_json(json).unwrap_err();
+        assert!(refused(r#"[{"start_time": 0, "duration": -2, "particles_per_second": 1}]"#).contains("key 1"));
+        assert!(refused(r#"[{"start_time": 0, "duration": 2}]"#).contains("needs a rate"));
+        assert!(refused(r#"[{"start_time": 0, "particles_per_second": 1, "m3_per_s": 1}]"#).contains("two rates"));
+        assert!(refused("{}").contains("is no list"));
+        assert!(Schedule::new(&[Key::particles(f64::NAN, 1.0, 1.0)]).is_err());
+    }
+}
