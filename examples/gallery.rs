@@ -331,8 +331,9 @@ fn five_ways() -> Outcome<[RgbImage; 2]> {
         let stage = if eroded { format!("[[stage]]\nkind = '{name}'\n{params}") } else { String::new() };
         let begun = Instant::now();
         let world = grow(&hills(&stage)?, &mut [])?;
-        println!("{}", figures(name, params, &world, begun.elapsed().as_secs_f64())?);
+        let seconds = begun.elapsed().as_secs_f64();
         let flowing = grow(&hills(&format!("{stage}[[stage]]\nkind = 'rivers'\ncarve = 0.0\n"))?, &mut [])?;
+        println!("{}", figures((name, params), &world, &flowing, seconds)?);
         let (seen, label) = match world.layer(Layer::Wear).filter(|_| eroded) {
             Some(wear) => {
                 let sum: f64 = wear.data.iter().map(|&v| v as f64).sum();
@@ -351,7 +352,7 @@ fn five_ways() -> Outcome<[RgbImage; 2]> {
 }
 
 /// A row of the table: what a family wore off, and the land that it left.
-fn figures(name: &str, params: &str, world: &World, seconds: f64) -> Outcome<String> {
+fn figures((name, params): (&str, &str), world: &World, flowing: &World, seconds: f64) -> Outcome<String> {
     let survey = measure::survey(world);
     let (slopes, pits) = (survey.slopes?, survey.pits?);
     let median = slopes.percentiles_deg.iter().find(|(percent, _)| *percent == 50).map_or(0.0, |(_, slope)| *slope);
@@ -366,9 +367,18 @@ fn figures(name: &str, params: &str, world: &World, seconds: f64) -> Outcome<Str
         if params.is_empty() { name.to_owned() } else { format!("`{name}`") },
         set.join(", "),
         100.0 * steep,
-        survey.density_km_per_km2?,
+        streams(flowing),
         pits.pits
     ))
+}
+
+/// Streams that drain a hectare and more, km/km²: the least discharge is that of a single cell.
+fn streams(world: &World) -> f64 {
+    let Some(discharge) = world.layer(Layer::Discharge) else { return 0.0 };
+    let one = discharge.data.iter().copied().filter(|&v| v > 0.0).fold(f32::INFINITY, f32::min);
+    let hectare = one * (1e4 / world.grid.cell_area_m2()) as f32;
+    let cells = discharge.data.iter().filter(|&&v| v >= hectare).count();
+    1e3 * cells as f64 * world.grid.cell_m / (discharge.data.len() as f64 * world.grid.cell_area_m2())
 }
 
 /// Hills a kilometre across, and what a stage makes of them.

@@ -42,10 +42,16 @@ impl Places {
         }
     }
 
+    /// Heights of the four cells, m. Written out: a closure handed to `map` is not always drawn into the loop.
+    #[inline(always)]
+    fn around(&self, l: usize) -> [f32; 4] {
+        [self.corners[0][l], self.corners[1][l], self.corners[2][l], self.corners[3][l]]
+    }
+
     /// Height, m.
     #[inline(always)]
     pub fn height(&self, l: usize) -> f32 {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|k: usize| self.corners[k][l]);
+        let [a, b, c, d] = self.around(l);
         let [across, down] = [self.within[0][l], self.within[1][l]];
         let [north, south] = [a + (b - a) * across, c + (d - c) * across];
         north + (south - north) * down
@@ -54,7 +60,7 @@ impl Places {
     /// Fall to the east and to the south, m a cell.
     #[inline(always)]
     pub fn fall(&self, l: usize) -> [f32; 2] {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|k: usize| self.corners[k][l]);
+        let [a, b, c, d] = self.around(l);
         let [across, down] = [self.within[0][l], self.within[1][l]];
         [(b - a) + ((d - c) - (b - a)) * down, (c - a) + ((d - b) - (c - a)) * across]
     }

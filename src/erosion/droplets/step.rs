@@ -81,10 +81,10 @@ impl Lanes {
             let steep = (fall[0] * fall[0] + fall[1] * fall[1]).sqrt();
             let turned = (1.0 - law.kept_way) / steep;
             let turns = steep * law.per_cell > LEVEL;
-            let [east, south] = [0, 1].map(|k: usize| {
-                let way = self.way[k][l];
-                if turns { way * law.kept_way - fall[k] * turned } else { way }
-            });
+            // Written out: a closure handed to `map` is not always drawn into the loop.
+            let (east, south) = (self.way[0][l], self.way[1][l]);
+            let east = if turns { east * law.kept_way - fall[0] * turned } else { east };
+            let south = if turns { south * law.kept_way - fall[1] * turned } else { south };
             let norm = (east * east + south * south).sqrt();
             let (east, south) = (east / norm, south / norm);
             (self.way[0][l], self.way[1][l]) = (east, south);
