@@ -358,7 +358,6 @@ fn a_locked_coast_stays_in_the_world() {
 }
 
 #[test]
-#[ignore = "pipes keeps heights from the sea by less than layers round; to be let run when it does"]
 fn a_locked_coast_stays_in_the_world_of_pipes() {
     coast_stays(FAMILIES[4]);
 }

@@ -27,7 +27,7 @@ fn a_volume_of_lava_spreads_as_huppert_says() {
     for t in [4e3, 8e3, 16e3, 32e3, 64e3] {
         run(&mut sheet, &law, &[], t - now);
         now = t;
-        let far = reaches(&sheet, &grid, middle, EDGE * volume / (3.14 * want(t) * want(t)));
+        let far = reaches(&sheet, &grid, middle, EDGE * volume / (std::f64::consts::PI * want(t) * want(t)));
         let r = mean(&far);
         println!("t {t} r {r:.1} want {:.1}", want(t));
         assert!((r / want(t) - 1.0).abs() < 0.03, "t {t}: {r} {}", want(t));
@@ -58,7 +58,7 @@ fn lava_that_keeps_coming_spreads_with_the_root_of_time() {
         now = t;
         let there = sheet.molten.iter().sum::<f64>() * grid.cell_area_m2();
         let want = 0.715 * (law.weight * rate * rate * rate / (3.0 * 1e4)).powf(0.125) * t.sqrt();
-        let r = mean(&reaches(&sheet, &grid, [1270.0; 2], EDGE * there / (3.14 * want * want)));
+        let r = mean(&reaches(&sheet, &grid, [1270.0; 2], EDGE * there / (std::f64::consts::PI * want * want)));
         println!("t {t} r {r:.1} want {want:.1}");
         assert!((r / want - 1.0).abs() < 0.03, "t {t}: {r} {want}");
         points.push((t, r));
