@@ -45,14 +45,14 @@ pub fn zooms(extent_m: [f64; 2], vertices: usize, wanted: Part) -> String {
         corner_m = [corner_m[0] + x_m, corner_m[1] + y_m];
         now_m = [whole_m; 2];
     }
-    text + "\n\n  [[stage]]\n  kind = \"rivers\""
+    text + "\n  [[stage]]\n  kind = \"rivers\""
 }
 
 /// The stage that lets streams carve a window.
 fn streams(side_m: f64) -> String {
     let kyr = (1e-3 * (YEARS_PER_M * side_m).max(LEAST_YEARS)).round();
     format!(
-        "\n\n  [[stage]]\n  kind = \"stream_power\"\n  duration_myr = {}\n  step_kyr = {}\n  talus_all_round = true\n  rim = \"held\"\n",
+        "\n  [[stage]]\n  kind = \"stream_power\"\n  duration_myr = {}\n  step_kyr = {}\n  talus_all_round = true\n  rim = \"held\"",
         kyr * 1e-3,
         kyr / STEPS
     )
