@@ -158,7 +158,7 @@ impl Page {
                 "waters",
                 "Rain, rivers, lakes and what grows",
                 "The same continent and its weather. Westerly wind brings the rain; behind the ranges it is dry. Runoff \
-                 feeds the rivers, drawn as wide as their discharge; lakes lie where the plates closed a basin.",
+                 feeds the rivers, drawn the wider the more they carry; lakes lie where the plates closed a basin.",
             ),
             (
                 "three-scales",
