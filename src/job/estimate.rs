@@ -12,7 +12,7 @@ const LARGE_CELLS: f64 = 4096.0 * 4096.0;
 const TRIALS: [usize; 2] = [128, 256];
 /// Seconds a million cells that storing and drawing take on two cores.
 const WRITING_S_PER_MCELL: f64 = 0.35;
-/// Fields of a map's size that solvers, checkpoints and writers hold besides the layers, at their peak: 30 were measured for
+/// Fields of a map's size that solvers, checkpoints and writers hold besides the layers, at their peak: 19 were measured for
 /// `pipes` at 8192 x 8192, 40 for carved plates at 1024 x 1024.
 const WORKING_FIELDS: usize = 30;
 
