@@ -80,15 +80,20 @@ fn cells(c: &mut Criterion) {
 fn storms(c: &mut Criterion) {
     let mut group = c.benchmark_group("pipes");
     group.sample_size(10);
-    for size in [256, 1024, 4096] {
+    // At one size with a rate by cell too, as a mask or hardness gives it.
+    for (size, rated) in [(256, false), (1024, false), (1024, true), (4096, false)] {
         group.throughput(Throughput::Elements(PASSES * (size * size) as u64));
         for threads in [1, 2] {
             let pool = on(threads);
             let mut bed = hills(size);
+            if rated {
+                bed.rate = (0..size * size).map(|i| 0.5 + 0.125 * (i % 5) as f32).collect();
+            }
             let mut pipes = Pipes::new(PipesParams::default(), &bed, None);
             // Until water runs everywhere.
             pool.install(|| pipes.run_steps(&mut bed, 100));
-            group.bench_function(BenchmarkId::new(format!("{threads} threads"), size), |b| {
+            let name = format!("{threads} threads{}", if rated { ", rates" } else { "" });
+            group.bench_function(BenchmarkId::new(name, size), |b| {
                 b.iter(|| pool.install(|| pipes.run_steps(&mut bed, PASSES)))
             });
         }

@@ -22,7 +22,7 @@ pub const SHEET_M: f32 = 1e-2;
 /// hardly more than 1).
 pub const FROUDE: f32 = 1.5;
 /// Water stands that is slower than this share of its waves' speed, the more the slower.
-pub const SLOW: f32 = 0.5;
+pub const SLOW: f32 = 0.3;
 /// Shallower water is less and less what stands, m: a film goes with its ground.
 pub const POND_M: f32 = 0.5;
 /// Water's surface falls at least this steeply over an open rim.
@@ -33,6 +33,8 @@ pub const THICKEST: f32 = 0.4;
 pub const TIMID: f32 = 0.25;
 /// Most that a bed changes in one step, in cells.
 pub const STRIDE: f32 = 0.02;
+/// Most that exchange with the water changes a bed in one step, in depths of that water: it has time to follow.
+pub const CALM: f32 = 0.05;
 /// How far above the mean of its neighbours a bed can be and still get sediment, in cells: what lies unevenly evens out.
 pub const BUMP: f32 = 0.005;
 /// Least way from the sea's level of heights that may not cross it, m.
@@ -62,7 +64,7 @@ pub struct Rules {
     pub shallow_m: f32,
     pub per_deep: f32,
     pub factor: f32,
-    /// Share of a bed's change that standing water's depth gives or gets, so that its surface stays.
+    /// Share of what a bed rises that standing water's depth loses, so that its surface stays.
     pub keep: f32,
     pub rock_softness: f32,
     pub softening: f32,

@@ -4,7 +4,7 @@ use std::hint::select_unpredictable;
 
 use super::{
     flow::{hi, lo},
-    rules::{BUMP, Beat, FROUDE, GRAVITY, POND_M, Rules, SHEET_M, SLOW, STILL_M, STRIDE, THICKEST, TIMID},
+    rules::{BUMP, Beat, CALM, FROUDE, GRAVITY, POND_M, Rules, SHEET_M, SLOW, STILL_M, STRIDE, THICKEST, TIMID},
 };
 
 /// A row of cells before the step. Rows of `ground` and `depth` begin one cell west of the map.
@@ -91,13 +91,13 @@ pub fn run(
     }
 }
 
-/// Brings a row's sediment over its faces, and exchanges it with the bed: `bed` becomes what is to be added to that, m.
+/// Brings a row's sediment over its faces, and exchanges it with the bed (`able` it can be, under water `deep`): `bed` becomes what is to be added to that, m.
 #[inline(always)]
 pub fn exchange(
     rules: &Rules,
     beat: &Beat,
     before: &Before,
-    able: &[f32],
+    [able, deep]: [&[f32]; 2],
     soft: &[f32],
     load: &mut [f32],
     bed: &mut [f32],
@@ -106,7 +106,7 @@ pub fn exchange(
     let [north, here, south] = before.ground;
     let (west, east) = (&here[..n], &here[2..][..n]);
     let (north, here, south) = (&north[1..][..n], &here[1..][..n], &south[1..][..n]);
-    let (able, soft, act, load) = (&able[..n], &soft[..n], &before.act[1..][..n], &mut load[..n]);
+    let (able, deep, soft, act, load) = (&able[..n], &deep[..n], &soft[..n], &before.act[1..][..n], &mut load[..n]);
     let (sw, se, sn, ss) = (&before.x[1][..n], &before.x[1][1..][..n], &before.north[1][..n], &before.south[1][..n]);
     let (stride_m, bump_m, per_factor) = (STRIDE * rules.cell_m, BUMP * rules.cell_m, 1.0 / rules.factor);
     let free = |z: f32| if rules.locked { 0.25 * room(rules, z) } else { f32::MAX };
@@ -120,7 +120,7 @@ pub fn exchange(
         let (z, w, e, n, s) = (here[i], west[i], east[i], north[i], south[i]);
         let low = lo(lo(w, e), lo(n, s));
         let mean = 0.25 * ((w + e) + (n + s));
-        let most = lo(stride_m, free(z));
+        let most = lo(lo(stride_m, CALM * deep[i]), free(z));
         let dig = lo(TIMID * hi(z - low, 0.0), most);
         let fill = lo(TIMID * hi(mean - z + bump_m, 0.0), most);
         let worn = hi(lo(rules.factor * (share * act[i] * lack), dig), -fill);
@@ -131,29 +131,18 @@ pub fn exchange(
     }
 }
 
-/// Keeps the surface of standing water where it is while its bed gets `bed`: what a pond's bed rises too much is counted
-/// with `dried`, what it sinks too much with `made`.
+/// Keeps the surface of standing water where it is while its bed gets `bed`. In the hours that the bed's time has and the
+/// water's has not, what it displaces runs off: that is counted with `dried`.
 #[inline(always)]
-pub fn keep_level(
-    rules: &Rules,
-    land: &[f32],
-    stands: &[f32],
-    bed: &[f32],
-    depth: &mut [f32],
-    dried: &mut [f32],
-    made: &mut [f32],
-) {
+pub fn keep_level(rules: &Rules, land: &[f32], stands: &[f32], bed: &[f32], depth: &mut [f32], dried: &mut [f32]) {
     let n = depth.len();
-    let (land, stands, bed) = (&land[..n], &stands[..n], &bed[..n]);
-    let (dried, made) = (&mut dried[..n], &mut made[..n]);
+    let (land, stands, bed, dried) = (&land[..n], &stands[..n], &bed[..n], &mut dried[..n]);
     for i in 0..n {
         let had = depth[i];
         let share = rules.keep * land[i] * lo(hi(stands[i], 0.0), 1.0);
-        let left = hi(had - share * bed[i], 0.0);
-        let gone = had - left;
+        let left = hi(had - share * hi(bed[i], 0.0), 0.0);
         depth[i] = left;
-        dried[i] += hi(gone, 0.0);
-        made[i] += hi(-gone, 0.0);
+        dried[i] += had - left;
     }
 }
 

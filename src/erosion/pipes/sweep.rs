@@ -27,7 +27,7 @@ pub struct Book {
     pub rained: f64,
     /// Water that dried up, or left ponds whose bed rose.
     pub dried: f64,
-    /// Water that rounding made, and that ponds got whose bed sank.
+    /// Water that rounding made.
     pub made: f64,
     /// Water that went into the sea.
     pub drowned: f64,
@@ -94,7 +94,7 @@ fn row(rules: &Rules, beat: &Beat, map: &mut Map, bench: &mut Bench, y: isize) {
     let (speed2, dried, made) = (&mut bench.speed2[..], &mut bench.dried[..], &mut bench.made[..]);
     let (able, stands) = (&mut bench.able[..w], &mut bench.stands[..]);
     sediment::run(rules, beat, &before, depth, able, speed2, dried, made, stands, out_x, out_y);
-    sediment::exchange(rules, beat, &before, able, soft, load, bed);
+    sediment::exchange(rules, beat, &before, [able, depth], soft, load, bed);
     if rules.softening > 0.0 {
         sediment::soften(rules, bed, soft);
     }
@@ -112,7 +112,7 @@ fn row(rules: &Rules, beat: &Beat, map: &mut Map, bench: &mut Bench, y: isize) {
         sea::drop(rules, line, bed, load);
     }
     if rules.keep > 0.0 {
-        sediment::keep_level(rules, &line.land[1..], &bench.stands, bed, depth, &mut bench.dried, &mut bench.made);
+        sediment::keep_level(rules, &line.land[1..], &bench.stands, bed, depth, &mut bench.dried);
     }
     let (start, rest) = (&map.still.start[y as usize * w..][..w], &mut rest[to..][..w]);
     let rated = !map.still.rate.is_empty();

@@ -3,11 +3,12 @@
 use super::*;
 use crate::noise::{Fbm, Key};
 
-/// Fractal hills of some height above a level.
-fn hills(size: usize, cell_m: f64, edges: Edges, [base_m, height_m, wavelength_m]: [f64; 3]) -> Bed {
-    let grid = Grid { width: size, height: size, cell_m, edges };
-    let sum = Fbm::new(wavelength_m, 1.0).octaves(Key::new(9), cell_m);
-    bed(size, size, cell_m, edges, |x, y| (base_m + height_m * sum.value(grid.center_m(x, y))) as f32)
+/// Fractal hills of some height above a level, one of many.
+fn hills(key: u64, size: usize, cell_m: f64, edges: Edges, [base_m, height_m, wavelength_m]: [f64; 3]) -> Bed {
+    let sum = Fbm::new(wavelength_m, 1.0).octaves(Key::new(key), cell_m);
+    bed(size, size, cell_m, edges, |x, y| {
+        (base_m + height_m * sum.value([x, y].map(|v| (v as f64 + 0.5) * cell_m))) as f32
+    })
 }
 
 /// The greatest flow, m³/s, and speed, m/s, that ever show in a hundred looks.
@@ -23,15 +24,14 @@ fn peaks(params: PipesParams, mut bed: Bed) -> ([f32; 2], Bed) {
 }
 
 #[test]
-fn a_river_is_as_fast_as_rivers_are() {
-    let spring = Spring { x_km: 0.5, y_km: 0.5, radius_m: 40.0, flow_m3_per_s: 12.0 };
-    for flux in [Flux::Signed, Flux::Mei] {
-        let params =
-            PipesParams { duration_h: 0.7, rain_mm_per_h: 0.0, springs: vec![spring], flux, ..Default::default() };
-        let ([flow, speed], after) = peaks(params, hills(64, 15.6, Edges::Open, [500.0, 80.0, 1500.0]));
+fn a_river_carries_no_more_than_it_brings() {
+    let spring = Spring { x_km: 0.75, y_km: 0.75, radius_m: 40.0, flow_m3_per_s: 12.0 };
+    let river = PipesParams { duration_h: 0.7, rain_mm_per_h: 0.0, springs: vec![spring], ..Default::default() };
+    for (key, flux) in [(1, Flux::Signed), (4, Flux::Signed), (4, Flux::Mei)] {
+        let params = PipesParams { flux, ..river.clone() };
+        let ([flow, speed], after) = peaks(params, hills(key, 96, 15.6, Edges::Open, [0.0, 80.0, 1500.0]));
         assert!(after.change.iter().any(|v| v.abs() > 3.0));
-        // It fills hollows behind its own bars, and these may burst: then more runs than the spring brings.
-        assert!(flow > 6.0 && speed < 10.0, "{flux:?}: {flow} m3/s, {speed} m/s");
+        assert!(flow > 3.0 && flow < 1.5 * 12.0 && speed < 10.0, "{key} {flux:?}: {flow} m3/s, {speed} m/s");
     }
 }
 
@@ -39,7 +39,7 @@ fn a_river_is_as_fast_as_rivers_are() {
 fn a_storm_carries_no_more_than_falls() {
     let params = PipesParams { duration_h: 0.5, ..Default::default() };
     let falls = (64.0f32 * 7.8) * (64.0 * 7.8) * 60.0 / 3.6e6;
-    let ([flow, speed], _) = peaks(params, hills(64, 7.8, Edges::Open, [0.0, 100.0, 400.0]));
+    let ([flow, speed], _) = peaks(params, hills(9, 64, 7.8, Edges::Open, [0.0, 100.0, 400.0]));
     assert!(flow < falls && speed < 10.0, "{flow} m3/s of {falls}, {speed} m/s");
 }
 
@@ -80,7 +80,7 @@ fn a_pond_stays_level_while_its_bed_rises() {
 #[test]
 fn a_lake_rests_on_a_fractal_bed() {
     for flux in [Flux::Signed, Flux::Mei] {
-        let mut bed = hills(48, 5.0, Edges::Closed, [900.0, 8.0, 120.0]);
+        let mut bed = hills(9, 48, 5.0, Edges::Closed, [900.0, 8.0, 120.0]);
         let params =
             PipesParams { flux, recession: 1.0, slip_per_h: 0.0, evaporation_mm_per_h: 0.0, ..Default::default() };
         let mut pipes = Pipes::new(params, &bed, None);
