@@ -28,6 +28,8 @@ const BORDERS_DEGC: [f32; 3] = [-5.0, 4.0, 20.0];
 const HALF_K: f32 = 4.0;
 /// Where snow begins and where it is whole, m over the snow line: a soft edge.
 const SNOW_M: [f32; 2] = [-200.0, 900.0];
+/// Slopes (tangents) off which snow begins to slide, and on which none lies: 33 and 45 degrees.
+const SLIDES: [f32; 2] = [0.65, 1.0];
 
 /// What a place is like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,10 +40,12 @@ pub struct Climate {
     pub temperature_degc: f32,
     /// Height of the snow line, m.
     pub snow_line_m: f32,
+    /// Share of the snow that the ground holds, by its steepness.
+    pub held: f32,
 }
 
 /// The climates that stand for all in a legend: humid and dry.
-pub const HUMID: Climate = Climate { rain_mm: 1100.0, temperature_degc: 10.0, snow_line_m: f32::INFINITY };
+pub const HUMID: Climate = Climate { rain_mm: 1100.0, temperature_degc: 10.0, snow_line_m: f32::INFINITY, held: 1.0 };
 /// See [`HUMID`].
 pub const ARID: Climate = Climate { rain_mm: 60.0, ..HUMID };
 
@@ -90,7 +94,7 @@ impl Tints {
             1.0.. => wet(),
             share => mix(dry(), wet(), share),
         };
-        mix(ground, self.snow, smooth(SNOW_M[0], SNOW_M[1], height_m - climate.snow_line_m))
+        mix(ground, self.snow, climate.held * smooth(SNOW_M[0], SNOW_M[1], height_m - climate.snow_line_m))
     }
 }
 
@@ -118,10 +122,17 @@ impl Cover {
     }
 
     /// The flat colour of a pixel's land.
-    pub fn at(&self, index: usize, height_m: f32) -> Rgb {
+    pub fn at(&self, heights: &Field<f32>, x: usize, y: usize) -> Rgb {
+        let (index, height_m) = (heights.grid.index(x, y), heights.at(x, y));
         let [rain_mm, temperature_degc, snow_line_m] = [0, 1, 2].map(|layer: usize| self.layers[layer].data[index]);
-        self.tints.at(Climate { rain_mm, temperature_degc, snow_line_m }, height_m, self.sea_m)
+        let held = if height_m - snow_line_m > SNOW_M[0] { held(heights.gradient(x, y)) } else { 1.0 };
+        self.tints.at(Climate { rain_mm, temperature_degc, snow_line_m, held }, height_m, self.sea_m)
     }
+}
+
+/// Share of the snow that ground of a gradient holds.
+fn held([east, south]: [f64; 2]) -> f32 {
+    1.0 - smooth(SLIDES[0], SLIDES[1], libm::hypot(east, south) as f32)
 }
 
 #[cfg(test)]
@@ -129,7 +140,7 @@ mod tests {
     use super::*;
 
     fn at(rain_mm: f32, temperature_degc: f32, height_m: f32) -> Rgb {
-        Tints::new().at(Climate { rain_mm, temperature_degc, snow_line_m: 3000.0 }, height_m, 0.0)
+        Tints::new().at(Climate { rain_mm, temperature_degc, snow_line_m: 3000.0, held: 1.0 }, height_m, 0.0)
     }
 
     #[test]
@@ -141,6 +152,15 @@ mod tests {
         }
         assert!(at(800.0, -12.0, 4200.0).into_iter().all(|c| c > 0.75));
         assert!(at(800.0, -8.0, 2700.0).into_iter().all(|c| c < 0.6));
+    }
+
+    #[test]
+    fn snow_slides_off_cliffs() {
+        assert_eq!([held([0.6, 0.0]), held([0.9, -0.8])], [1.0, 0.0]);
+        let seen = |held| {
+            Tints::new().at(Climate { rain_mm: 800.0, temperature_degc: -12.0, snow_line_m: 3000.0, held }, 4200.0, 0.0)
+        };
+        assert!(seen(0.0)[1] < 0.5 && seen(1.0)[1] > 0.75);
     }
 
     #[test]

@@ -79,8 +79,7 @@ fn colours(cover: &Cover, height: &Field<f32>) -> [Vec<f32>; 3] {
     let rows = red.par_chunks_mut(width).zip(green.par_chunks_mut(width)).zip(blue.par_chunks_mut(width));
     rows.enumerate().for_each(|(y, ((red, green), blue))| {
         for x in 0..width {
-            let i = y * width + x;
-            [red[x], green[x], blue[x]] = cover.at(i, height.data[i]);
+            [red[x], green[x], blue[x]] = cover.at(height, x, y);
         }
     });
     [red, green, blue]
