@@ -25,6 +25,8 @@ use crate::{
 
 /// Steps beyond which a run would take days.
 const MOST_STEPS: f64 = 1e5;
+/// The same for each million years of the plates that a coupled stage follows.
+const MOST_STEPS_A_MYR: f64 = 2e4;
 
 /// What the rim of an open map is to rivers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -181,15 +183,17 @@ impl Process for Stage {
     }
 
     fn fit(&self, _grid: &Grid) -> Result<(), ProcessError> {
-        let (myr, kyr) = (self.params.duration_myr, self.params.step_kyr);
-        if 1e3 * myr / kyr > MOST_STEPS {
-            return Err(ProcessError::Unfit(format!(
-                "{myr} My in steps of {kyr} ky are {:.0} steps; raise step_kyr to {} or more",
-                1e3 * myr / kyr,
-                1e3 * myr / MOST_STEPS
-            )));
+        let (kyr, coupled) = (self.params.step_kyr, self.params.coupled);
+        // Coupled, its time is the plates'.
+        let (myr, most) = if coupled { (1.0, MOST_STEPS_A_MYR) } else { (self.params.duration_myr, MOST_STEPS) };
+        let steps = 1e3 * myr / kyr;
+        if steps <= most {
+            return Ok(());
         }
-        Ok(())
+        let span = if coupled { "each My of the plates".to_owned() } else { format!("{myr} My") };
+        let least = 1e3 * myr / most;
+        let text = format!("{span} in steps of {kyr} ky are {steps:.0} steps; raise step_kyr to {least} or more");
+        Err(ProcessError::Unfit(text))
     }
 
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {

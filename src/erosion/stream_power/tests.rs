@@ -1,13 +1,14 @@
 //! Stream power against closed forms, published numbers, and the worst that can be asked of it.
 
 use super::{
-    Rim,
+    Rim, StreamPowerParams,
     carver::{Carver, Forcing, Law, Moved},
     deposition::{Deposition, Slopes},
 };
 use crate::{
     flow::{LENGTHS, ROOT, Router},
     grid::{Edges, Grid},
+    process::Placement,
 };
 
 const LAW: Law = Law {
@@ -435,4 +436,22 @@ fn the_same_bits_on_any_number_of_threads_and_the_same_land_at_any_size() {
     let r = moment(&a, &b, ma, mb) / (moment(&a, &a, ma, ma) * moment(&b, &b, mb, mb)).sqrt();
     // DESIGN.md's second promise.
     assert!(r > 0.95, "{r}");
+}
+
+/// A refusal names the span that the steps are of: its own duration, or the plates'.
+#[test]
+fn steps_of_a_year_are_refused() {
+    let refusal = |coupled: bool, duration_myr: f64, step_kyr: f64| {
+        let params = StreamPowerParams { coupled, duration_myr, step_kyr, ..StreamPowerParams::default() };
+        let fit = params.process(Placement::default(), None).fit(&Grid::new(8, 8, 100.0, Edges::Open));
+        fit.err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    let own = refusal(false, 2.0, 0.001);
+    assert!(own.contains("2 My in steps of 0.001 ky are 2000000 steps; raise step_kyr to 0.02 or more"), "{own}");
+    let plates = refusal(true, 5.0, 0.001);
+    assert!(plates.contains("each My of the plates in steps of 0.001 ky are 1000000 steps"), "{plates}");
+    assert!(plates.contains("raise step_kyr to 0.05 or more"), "{plates}");
+    for sound in [refusal(false, 0.05, 0.001), refusal(true, 5.0, 0.05), refusal(false, 1e3, 1e4)] {
+        assert_eq!(sound, "");
+    }
 }
