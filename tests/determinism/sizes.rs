@@ -1,6 +1,12 @@
 //! Another size is the same land, sharper or coarser (DESIGN.md's second promise).
 
-use upthrust::{recipe::presets, world::World};
+use std::sync::atomic::AtomicBool;
+
+use upthrust::{
+    recipe::{Overrides, Plan, Source, presets},
+    timeline::Timeline,
+    world::World,
+};
 
 use super::grown;
 
@@ -66,6 +72,53 @@ fn every_preset_is_the_same_land_at_another_size() {
     for preset in presets().iter().filter(|preset| !excepted(preset.name)) {
         let [coarse, fine] = ["256", "512"].map(|size| grown(preset.name, size, None));
         assert_same_land(&coarse, &fine, 0.95, preset.name);
+    }
+}
+
+/// Heights of a window's cells averaged over the cells of the map it was cut from, beside that map's own: where a
+/// cell lies whole in the window.
+fn averaged_over(parent: &World, window: &World) -> (Vec<f64>, Vec<f64>) {
+    let corner_m = |world: &World| {
+        let last =
+            |column: &str| world.table("windows").and_then(|t| t.numbers(column)?.last().copied()).unwrap_or(0.0);
+        [1e3 * last("first_x_km"), 1e3 * last("first_y_km")]
+    };
+    let (from, to) = (corner_m(parent), corner_m(window));
+    let (coarse, fine) = (parent.height(), window.height());
+    let (cell_m, width) = (coarse.grid.cell_m, coarse.grid.width);
+    let mut cells = vec![(0.0, 0u32); coarse.data.len()];
+    for (i, &height) in fine.data.iter().enumerate() {
+        let (x, y) = fine.grid.cell_of(i);
+        let at_m = fine.grid.center_m(x, y);
+        let [x, y] = [0, 1].map(|axis: usize| ((at_m[axis] + to[axis] - from[axis]) / cell_m) as usize);
+        let (sum, count) = &mut cells[y * width + x];
+        (*sum, *count) = (*sum + height as f64, *count + 1);
+    }
+    let whole = 0.9 * (cell_m / fine.grid.cell_m).powi(2);
+    let inside = cells.iter().zip(&coarse.data).filter(|((_, count), _)| *count as f64 >= whole);
+    inside.map(|(&(sum, count), &own)| (sum / count as f64, own as f64)).unzip()
+}
+
+/// A window goes on from its map: rivers carve it anew, and still it is that land.
+#[test]
+fn a_valley_matches_its_continent() {
+    let source = Source::find("continent-to-valley").unwrap();
+    let overrides = Overrides { size: Some("256".to_owned()), ..Overrides::default() };
+    let plan = Plan::new(&source, &overrides).unwrap();
+    let until = |stage: &str| {
+        let last = plan.stages.iter().position(|s| s.label == stage);
+        Timeline::new(&plan, &AtomicBool::new(false)).until(last).run(&mut [], &mut |_| ()).unwrap()
+    };
+    let [continent, range, valley] = ["plates", "waters", &plan.stages.last().unwrap().label].map(until);
+    for (what, parent, window) in [("range", &continent, &range), ("valley", &range, &valley)] {
+        let (carved, own) = averaged_over(parent, window);
+        assert!(own.len() > 100, "{what}: {} cells", own.len());
+        let correlation = correlation(&carved, &own);
+        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+        let spread = (own.iter().map(|z| (z - mean(&own)).powi(2)).sum::<f64>() / own.len() as f64).sqrt();
+        let sunk = (mean(&own) - mean(&carved)) / spread;
+        println!("{what}: correlation {correlation:.3}, mean lower by {sunk:.3} spreads of {spread:.0} m");
+        assert!(correlation > 0.9 && sunk.abs() < 0.4, "{what}: {correlation:.3} {sunk:.3}");
     }
 }
 
