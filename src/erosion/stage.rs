@@ -82,16 +82,31 @@ pub(super) fn cell_size(grid: &Grid, least_m: f64, most_m: f64) -> Option<String
     let fits = (least_m..=most_m).contains(&cell_m);
     (!fits).then(|| {
         format!(
-            "it is made for cells of {least_m} to {most_m} m; these are {cell_m:.3} m wide, so take it as a picture"
+            "it is made for cells of {least_m} to {most_m} m; these are {} m wide, so take it as a picture",
+            rounded(cell_m)
         )
     })
 }
 
 /// How the clocks of water and land go.
 pub(super) fn clocks(water_h: f64, bed_yr: f64, factor: f64) -> String {
-    let days = bed_yr * 365.25;
-    let bed = if bed_yr >= 1.0 { format!("{bed_yr:.1} years") } else { format!("{days:.1} days") };
-    format!("{water_h} h of water stand for {bed} of land (morphological_factor = {factor})")
+    let (water, bed) = (span(water_h / 24.0), span(bed_yr * 365.25));
+    format!("{water} of water stand for {bed} of land (morphological_factor = {factor})")
+}
+
+/// A span of time in the unit that suits it.
+fn span(days: f64) -> String {
+    const UNITS: [(f64, &str); 4] =
+        [(365.25, "years"), (1.0, "days"), (1.0 / 24.0, "hours"), (1.0 / 1440.0, "minutes")];
+    let (size, unit) = UNITS.into_iter().find(|&(size, _)| days >= size).unwrap_or((1.0 / 86_400.0, "seconds"));
+    format!("{} {unit}", rounded(days / size))
+}
+
+/// A number to three digits, without a tail of zeros.
+fn rounded(value: f64) -> String {
+    let digits = (2 - libm::floor(libm::log10(value.abs().max(1e-3))) as i32).max(0) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// A family at work.

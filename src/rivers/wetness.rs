@@ -3,7 +3,7 @@
 //! no stripes in the directions of the raster.
 
 use crate::{
-    flow::{Compass, Drainage, FREEMAN},
+    flow::{Compass, Drainage, FREEMAN, LENGTHS},
     grid::map_cells,
 };
 
@@ -24,28 +24,34 @@ pub fn index(way: &Drainage) -> Vec<f64> {
         // Beyond the rim ground goes on level.
         let mut drop = [0.0; 8];
         compass.each(i, |way, j| drop[way as usize] = (surface[i] - surface[j]) / grid.cell_m);
-        let (slope, contour) = steepest(drop);
-        libm::log(area_m2[i] / (contour * grid.cell_m) / slope.max(LEAST_SLOPE))
+        let slope = steepest(drop);
+        let per_metre = if slope > 0.0 { advance(drop, slope) / grid.cell_m } else { 1.0 / grid.cell_m };
+        libm::log(area_m2[i] * per_metre / slope.max(LEAST_SLOPE))
     });
     index
 }
 
-/// The steepest fall over the eight triangles about a cell (Tarboton 1997), from the drops to its neighbours in cells; and how
-/// many cells of contour its water crosses: contours are made of cells that touch by sides or corners, so where
-/// they run aslant there are fewer cells than metres.
-fn steepest(drop: [f64; 8]) -> (f64, f64) {
+/// How far down the slope water comes in one step to the neighbours it parts to, on the mean, in cells. Where it comes far it
+/// stands in fewer cells: so much of a cell's water crosses a contour as long as a cell.
+fn advance(drop: [f64; 8], slope: f64) -> f64 {
+    let falling = drop.into_iter().zip(LENGTHS).filter(|&(drop, _)| drop > 0.0);
+    let parted = falling.map(|(drop, length)| (libm::pow(drop / length, FREEMAN), drop));
+    let (whole, fallen) =
+        parted.fold((0.0, 0.0), |(whole, fallen), (share, drop)| (whole + share, fallen + share * drop));
+    if whole > 0.0 { fallen / (whole * slope) } else { 1.0 }
+}
+
+/// The steepest fall over the eight triangles about a cell (Tarboton 1997), from the drops to its neighbours in cells.
+fn steepest(drop: [f64; 8]) -> f64 {
     let fall = FACETS.map(|(side, corner)| {
         let (along, across) = (drop[side], drop[corner] - drop[side]);
-        if across <= 0.0 {
-            return (along, 1.0);
+        match across {
+            ..=0.0 => along,
+            _ if across >= along => drop[corner] * std::f64::consts::FRAC_1_SQRT_2,
+            _ => libm::hypot(along, across),
         }
-        if across >= along {
-            return (drop[corner] * std::f64::consts::FRAC_1_SQRT_2, std::f64::consts::SQRT_2);
-        }
-        let slope = libm::hypot(along, across);
-        (slope, slope / along)
     });
-    fall.into_iter().fold((0.0, 1.0), |most, one| if one.0 > most.0 { one } else { most })
+    fall.into_iter().fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -78,10 +84,15 @@ mod tests {
         for degrees in (0..360).step_by(5) {
             let (sin, cos) = (degrees as f64).to_radians().sin_cos();
             let drop = crate::flow::STEPS.map(|(dx, dy)| 0.3 * (dx as f64 * cos + dy as f64 * sin));
-            let (slope, contour) = steepest(drop);
+            let slope = steepest(drop);
             assert!((slope - 0.3).abs() < 1e-12, "{degrees}: {slope}");
-            assert!((contour * cos.abs().max(sin.abs()) - 1.0).abs() < 1e-12, "{degrees}: {contour}");
+            // One cell along the raster; aslant, further to the corner and less far to the sides.
+            let advance = advance(drop, slope);
+            assert!(
+                (0.93..1.01).contains(&advance) && (degrees % 90 != 0 || (advance - 1.0).abs() < 1e-12),
+                "{advance}"
+            );
         }
-        assert_eq!(steepest([-1.0; 8]).0, 0.0);
+        assert_eq!(steepest([-1.0; 8]), 0.0);
     }
 }

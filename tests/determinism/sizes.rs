@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use upthrust::{
+    measure,
     recipe::{Overrides, Plan, Source, presets},
     timeline::Timeline,
     world::World,
@@ -72,7 +73,26 @@ fn every_preset_is_the_same_land_at_another_size() {
     for preset in presets().iter().filter(|preset| !excepted(preset.name)) {
         let [coarse, fine] = ["256", "512"].map(|size| grown(preset.name, size, None));
         assert_same_land(&coarse, &fine, 0.95, preset.name);
+        if OF_GAMES.contains(&preset.name) {
+            assert_drains(&fine, preset.name);
+        }
     }
+}
+
+/// Valleys at the scale of games: what water made drains.
+const OF_GAMES: [&str; 5] = ["badlands", "alpine-screes", "alpine-valley", "river-source", "volcanic-slope"];
+
+/// Less than a pit in 10,000 cells of the ground as it is.
+fn assert_drains(world: &World, what: &str) {
+    let pits = measure::survey(world).pits.unwrap();
+    let share = pits.per_10_000().unwrap();
+    println!("{what}: {} pits and {} lakes", pits.pits, pits.lakes);
+    assert!(share < 1.0, "{what}: {share} pits in 10,000 cells");
+}
+
+#[test]
+fn a_canyon_drains() {
+    assert_drains(&grown("canyon", "256", None), "canyon");
 }
 
 /// Heights of a window's cells averaged over the cells of the map it was cut from, beside that map's own: where a
@@ -119,6 +139,7 @@ fn a_valley_matches_its_continent() {
         let sunk = (mean(&own) - mean(&carved)) / spread;
         println!("{what}: correlation {correlation:.3}, mean lower by {sunk:.3} spreads of {spread:.0} m");
         assert!(correlation > 0.9 && sunk.abs() < 0.4, "{what}: {correlation:.3} {sunk:.3}");
+        assert_drains(window, what);
     }
 }
 

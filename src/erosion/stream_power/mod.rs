@@ -93,12 +93,15 @@ pub struct StreamPowerParams {
     /// How water chooses among the eight neighbours of a cell.
     #[schemars(extend("x-effect" = "rho8: by a chance that is fair to all directions, for even slopes and fine cells"))]
     pub routing: Routing,
-    /// Longest step.
-    #[schemars(range(min = 0.001, max = 10000.0), extend("x-unit" = "ky", "x-effect" = "faster, blurs the moment a valley is cut"))]
+    /// Longest step. Water keeps its way through a step, so steps of more than a million years would leave walls and pits.
+    #[schemars(range(min = 0.001, max = 1000.0), extend("x-unit" = "ky", "x-effect" = "faster, blurs the moment a valley is cut"))]
     pub step_kyr: f64,
     /// What the rim of an open map is.
     #[schemars(extend("x-effect" = "held: rivers leave no lower than they did, as in a window; fixed: the rim keeps its height and what reaches it is gone"))]
     pub rim: Rim,
+    /// Uplift also moves the sea floor, as it always does where plates are coupled. Else the sea is a base that stays.
+    #[schemars(extend("x-effect" = "islands rise out of the sea, sunken land goes on sinking"))]
+    pub lift_sea_floor: bool,
     /// Steps in turn with the plates stage before it; uplift then also moves the sea floor.
     #[schemars(extend("x-effect" = "ranges are carved while they rise"))]
     pub coupled: bool,
@@ -122,6 +125,7 @@ impl Default for StreamPowerParams {
             routing: Routing::Steepest,
             step_kyr: 100.0,
             rim: Rim::Free,
+            lift_sea_floor: false,
             coupled: false,
         }
     }
@@ -141,7 +145,7 @@ impl StreamPowerParams {
             diffusivity_m2_per_yr: self.diffusivity_m2_per_yr,
             marine_reach_m: 1e3 * self.marine_reach_km,
             rim: self.rim,
-            lifts_base: self.coupled,
+            lifts_base: self.coupled || self.lift_sea_floor,
         }
     }
 

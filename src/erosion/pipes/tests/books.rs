@@ -100,7 +100,8 @@ proptest! {
         (rain, evaporation, roughness) in (0.0f64..1000.0, 0.0f64..1000.0, 0.0f64..0.5),
         (capacity, floor, film, shallow) in (0.0f64..10.0, 0.0f64..45.0, 0.0f64..10.0, 0.0f64..1000.0),
         (dissolve, settle, soft, softening) in (0.0f64..10.0, 0.0f64..10.0, 0.01f64..1.0, 0.0f64..100.0),
-        (talus, slip, factor) in (1.0f64..89.0, 0.0f64..10000.0, -3.0f64..3.0),
+        (talus, wet, slip, factor) in (1.0f64..89.0, 1.0f64..89.0, 0.0f64..10000.0, -3.0f64..3.0),
+        disc in 0.0f64..1.0,
         (kind, width, height, seed) in (0usize..72, 1usize..20, 1usize..20, 0u32..1000),
     ) {
         let edges = [Edges::Open, Edges::Closed, Edges::Wrap][kind % 3];
@@ -119,6 +120,7 @@ proptest! {
         let params = PipesParams {
             recession: 0.25,
             rain_mm_per_h: rain,
+            rain_radius_km: if seed % 4 == 0 { 1e-3 * disc * bed.grid.extent_m()[0] } else { 0.0 },
             evaporation_mm_per_h: evaporation,
             manning_n: if seed % 11 == 0 { 0.0 } else { roughness },
             capacity_s_per_m: capacity,
@@ -131,6 +133,7 @@ proptest! {
             rock_softness: soft,
             softening_per_m: softening,
             talus_angle_deg: talus,
+            wet_talus_angle_deg: wet,
             slip_per_h: slip,
             morphological_factor: 10f64.powf(factor),
             sediment,
