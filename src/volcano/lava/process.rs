@@ -4,6 +4,7 @@ use super::{eruption::Eruption, law::Law, params::LavaParams};
 use crate::{
     grid::Grid,
     process::{Context, Placement, Process, ProcessError, State, Step},
+    volcano::outlet::check,
     world::{Layer, Matter, Table, World},
 };
 
@@ -58,12 +59,12 @@ fn write(run: &mut Eruption, hardness: f64, world: &mut World, stage: &str) {
     let each = run.particle_m3();
     let [drawn, froze, left] = run.counts().map(|count| count as f64 * each);
     world.ledger.set(stage, Matter::Lava, drawn, froze + left);
-    world.ledger.close(stage, Matter::Lava, run.flow.cloud.len() as f64 * each);
+    world.ledger.close(stage, Matter::Lava, run.flow.swarm.len() as f64 * each);
 }
 
 /// Shows what flows: its depth, and the table of particles where there are any.
 fn show(run: &Eruption, world: &mut World) {
-    let cloud = &run.flow.cloud;
+    let cloud = &run.flow.swarm.cloud;
     let depth = run.land.depth_m([&cloud.x, &cloud.y], run.particle_m3(), 1.2 * run.law.spacing);
     world.set_layer(Layer::MoltenLava, depth);
     world.remove_table(TABLE);
@@ -106,7 +107,8 @@ impl Process for Lava {
 
     fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
         let law = Law::new(&self.params, grid);
-        let all = law.check(grid).and_then(|()| self.params.schedule().map(|_| ()));
+        let vents = || check(&self.params.vent, grid);
+        let all = law.check(grid).and_then(|()| vents()).and_then(|()| self.params.schedule().map(|_| ()));
         all.map_err(ProcessError::Unfit)
     }
 
