@@ -118,7 +118,7 @@ pub fn relief(
     crate::grid::map_cells(&mut pixels, frame.grid.width, |x, y| {
         let halo = || Brush::halo(coast.offshore_px.at(x, y), unit);
         let (i, height_m, land) = (heights.grid.index(x, y), heights.at(x, y), coast.land.at(x, y));
-        let ground = cover.filter(|_| land > 0.0).map(|cover| cover.at(i, height_m));
+        let ground = cover.filter(|_| land > 0.0).map(|cover| cover.at(i, height_m, || scene.land(height_m.max(sea))));
         let place = Place { height_m, tone: tone.at(x, y), land, ground };
         brush.pixel(scene, place, coast.line_px.at(x, y), halo)
     });

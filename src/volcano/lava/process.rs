@@ -62,11 +62,18 @@ fn write(run: &mut Eruption, hardness: f64, world: &mut World, stage: &str) {
     world.ledger.close(stage, Matter::Lava, run.flow.swarm.len() as f64 * each);
 }
 
-/// Shows what flows: its depth, and the table of particles where there are any.
+/// Shows how deep and how hot lava flows.
+fn lay(run: &Eruption, world: &mut World) {
+    let seen = run.seen();
+    let [x, y, _] = seen.place_m;
+    let [depth, degc] = run.land.depth_m([x, y], &seen.degc, run.particle_m3(), 1.2 * run.law.spacing);
+    world.set_layer(Layer::MoltenLava, depth);
+    world.set_layer(Layer::MoltenTemperature, degc);
+}
+
+/// Shows the particles where there are any.
 fn show(run: &Eruption, world: &mut World) {
     let cloud = &run.flow.swarm.cloud;
-    let depth = run.land.depth_m([&cloud.x, &cloud.y], run.particle_m3(), 1.2 * run.law.spacing);
-    world.set_layer(Layer::MoltenLava, depth);
     world.remove_table(TABLE);
     if cloud.is_empty() {
         return;
@@ -100,6 +107,7 @@ impl Process for Lava {
             Layer::Sediment,
             Layer::Hardness,
             Layer::MoltenLava,
+            Layer::MoltenTemperature,
             Layer::LavaTemperature,
             Layer::LavaDate,
         ]
@@ -150,6 +158,7 @@ impl Process for Lava {
             run.settle();
         }
         write(&mut run, self.params.hardness, world, context.stage);
+        lay(&run, world);
         self.run = Some(run);
         Ok(Step { done: self.done as f64 / self.steps as f64, elapsed_yr: self.span_yr() })
     }

@@ -100,7 +100,7 @@ impl Stage {
         let over = self.done + 1 >= self.steps;
         let grid = world.grid;
         let area = grid.cell_area_m2();
-        let mut depth = Field::filled(grid, 0.0f32);
+        let [mut depth, mut warm] = [0; 2].map(|_| Field::filled(grid, 0.0f32));
         let mut melt = Vec::new();
         let mut settled = 0.0;
         let mut cells = Vec::new();
@@ -115,6 +115,7 @@ impl Stage {
             } else if molten > 0.0 {
                 melt.push(Melt { cell: i as u32, depth: molten, heat });
                 depth.data[i] = molten as f32;
+                warm.data[i] = law.melt.degc(heat / molten) as f32;
             }
             if molten > 0.0 || fresh.frozen > 0.0 {
                 cells.push(fresh);
@@ -124,6 +125,7 @@ impl Stage {
         let date = (world.time_yr + self.elapsed_yr()) as f32;
         run.lay(world, &cells, frozen_m3, (date, self.params.hardness as f32), context.stage);
         world.set_layer(Layer::MoltenLava, depth);
+        world.set_layer(Layer::MoltenTemperature, warm);
         world.ledger.book_in(context.stage, Matter::Lava, sheet.books.erupted * area);
         world.ledger.book_out(context.stage, Matter::Lava, sheet.books.left * area + frozen_m3);
         let flows_m3 = melt.iter().map(|melt| melt.depth).sum::<f64>() * area;
@@ -238,6 +240,7 @@ impl Process for Stage {
             Layer::Sediment,
             Layer::Hardness,
             Layer::MoltenLava,
+            Layer::MoltenTemperature,
             Layer::LavaTemperature,
             Layer::LavaDate,
         ]
