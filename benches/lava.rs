@@ -1,11 +1,18 @@
 //! Steps of lava on one thread and on two: 64,000 particles at rest in a basin, viscosity followed and solved for at once, with
-//! what a look for neighbours costs in it. Elements are steps of a particle.
+//! what a look for neighbours costs in it. Elements are steps of a particle. Then a look for neighbours alone, by cells and by
+//! the loop over all pairs.
+
+use std::time::Instant;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use upthrust::{
     grid::{Edges, Field, Grid},
     noise::Key,
-    volcano::lava::{Eruption, Key as Timed, LavaParams, Smoothing, Solver, VentParams},
+    sph::{Scale, Swarm, WendlandC2, naive_neighbours},
+    volcano::{
+        Key as Timed, VentParams,
+        lava::{Eruption, LavaParams, Smoothing, Solver},
+    },
     world::{Layer, World},
 };
 
@@ -61,5 +68,53 @@ fn lava(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, lava);
+/// A block of particles that are not quite on a lattice a metre wide, and how far their lists reach.
+fn block(particles: usize) -> (Swarm, Grid, f32) {
+    let side = libm::cbrt(particles as f64).ceil() as usize;
+    let grid = Grid::new(side, side, side as f64, Edges::Open);
+    let scale = Scale::new::<WendlandC2>(1.0, 1.3);
+    let (mut swarm, mut stream) = (Swarm::new(&grid, scale.support_m()), Key::new(7).stream());
+    for k in 0..particles {
+        let at = [k % side, k / side % side, k / side / side];
+        let at = at.map(|at| (at as f64 + stream.between(0.3, 0.7)) as f32);
+        swarm.add([at, [0.0; 3]], 0.0, 0.0, k as u64);
+    }
+    (swarm, grid, scale.support_m() + 0.4)
+}
+
+fn neighbours(c: &mut Criterion) {
+    let mut group = c.benchmark_group("neighbours");
+    group.sample_size(10);
+    for particles in [1_000, 3_000, 10_000, 30_000, 100_000] {
+        let (mut swarm, grid, radius) = block(particles);
+        group.throughput(Throughput::Elements(particles as u64));
+        for threads in [1, 2] {
+            let on = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
+            group.bench_function(BenchmarkId::new(format!("cells, {threads} threads"), particles), |b| {
+                b.iter(|| {
+                    on.install(|| {
+                        swarm.sort(&grid, radius);
+                        swarm.meet(radius);
+                    })
+                })
+            });
+        }
+        if particles <= 10_000 {
+            group.bench_function(BenchmarkId::new("all pairs", particles), |b| {
+                b.iter(|| naive_neighbours(&swarm.cloud, swarm.domain, radius))
+            });
+        } else {
+            // Ten of these would take minutes.
+            let begun = Instant::now();
+            let found: usize = naive_neighbours(&swarm.cloud, swarm.domain, radius).iter().map(Vec::len).sum();
+            println!(
+                "neighbours/all pairs/{particles}: {:.2} s, one pass, {found} found",
+                begun.elapsed().as_secs_f64()
+            );
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, lava, neighbours);
 criterion_main!(benches);

@@ -1,5 +1,6 @@
 //! Draws `docs/gallery/`: every preset, the plates of `collision` in motion, what else its world knows, its waters, a
-//! continent and a valley in it, one start eroded five ways, a film of a canyon, and the report that sets the default world
+//! continent and a valley in it, one start eroded five ways, lava hot and cold, films of a
+//! canyon and of an eruption, and the report that sets the default world
 //! beside Earth.
 //!
 //! `cargo run --release --example gallery` draws it all; names of pictures after `--` draw only those. Films need ffmpeg.
@@ -32,7 +33,7 @@ const SIDE: usize = 512;
 const PANEL: usize = 320;
 const PANELS: usize = 6;
 /// Cells below this width are chosen for particles, m.
-const PARTICLES_M: f64 = 2.0;
+const PARTICLES_M: f64 = 3.0;
 const QUALITY: u8 = 85;
 /// The repository stays small: a larger picture is encoded more coarsely.
 const MOST_BYTES: usize = 190_000;
@@ -67,6 +68,12 @@ fn main() -> Outcome<()> {
         let [eroded, flow] = five_ways()?;
         page.draw("five-ways", &eroded)?;
         page.draw("five-ways-flow", &flow)?;
+    }
+    if wants("fire") {
+        page.draw("fire", &fire()?)?;
+    }
+    if wants("eruption-film") {
+        page.film("eruption", "eruption-film")?;
     }
     if wants("canyon-film") {
         page.film("canyon", "canyon-film")?;
@@ -177,6 +184,11 @@ impl Page {
         for (name, title, caption) in sheets {
             writeln!(text, "## {title}\n\n![{title}]({name}.jpg)\n\n{caption}\n")?;
         }
+        text += "## Fire\n\n![An island erupts](eruption-film.webp)\n\n`upthrust grow eruption --video eruption.mp4 --clock`: lava \
+                 by its temperature, black below 500 °C, red at 900, yellow at 1200; what has frozen is dark and is ground \
+                 from then on.\n\n![Lava hot, frozen, and eroded](fire.jpg)\n\nAbove, preset `eruption` as it runs and \
+                 where it froze; below, the flows of `shield-flows` fresh, under ash and after three thousand years of \
+                 rain, and how thick they lie.\n\n";
         text += "## A canyon\n\n![A canyon being cut](canyon-film.webp)\n\n`upthrust grow canyon --video canyon.mp4 --clock`: a \
                  third of a million years of rivers, then a flood, then slides.\n\n";
         text += "## Beside Earth\n\nThe default world's landscape, measured: [report](report.md), as `upthrust inspect WORLD \
@@ -275,6 +287,52 @@ fn waters() -> Outcome<RgbImage> {
     let panels = std::iter::once(("rivers and lakes", View::Relief)).chain(layers);
     let panels = panels.map(|(label, view)| Ok((label.to_owned(), relief::map(&world, &view, &options)?)));
     Ok(relief::contact_sheet(&panels.collect::<Outcome<Vec<_>>>()?, 2))
+}
+
+/// Keeps the world at the end of every stage.
+#[derive(Default)]
+struct Ends {
+    worlds: Vec<World>,
+}
+
+impl Sink for Ends {
+    fn wants(&mut self, moment: &Moment) -> Interest {
+        Interest::Whole.when(moment.stage_over())
+    }
+
+    fn take(&mut self, world: &World, _: &Moment) -> Result<(), String> {
+        self.worlds.push(world.clone());
+        Ok(())
+    }
+}
+
+/// An eruption as it runs and as it froze, and flows before and after rain.
+fn fire() -> Outcome<RgbImage> {
+    let preset = |name: &str| recipe::find_preset(name).ok_or_else(|| format!("there is no preset '{name}'"));
+    let mut album = Album::default();
+    let own = Plan::new(&preset("eruption")?.source(), &Overrides::default())?;
+    let cold = grow(&own, &mut [&mut album])?;
+    let hot = album.worlds.iter().rfind(|world| flows(world)).ok_or("nothing flows in the eruption's pictures")?;
+    let mut ends = Ends::default();
+    let worn = grow(&plan(preset("shield-flows")?, SIDE)?, &mut [&mut ends])?;
+    // The last two stages are the ash and the rain.
+    let fresh = ends.worlds.iter().rev().nth(2).ok_or("shield-flows has too few stages")?;
+    let layer = View::Layer;
+    let panels = [
+        ("an island erupts", hot, View::Relief),
+        ("temperature of what flows", hot, layer(Layer::MoltenTemperature)),
+        ("temperature at which it froze", &cold, layer(Layer::LavaTemperature)),
+        ("flows of a shield volcano", fresh, View::Relief),
+        ("after ash and rain", &worn, View::Relief),
+        ("thickness of lava", &worn, layer(Layer::Lava)),
+    ];
+    let options = Options { furniture: true, ..Options::bare(PANEL) };
+    let panels = panels.map(|(label, world, view)| Ok((label.to_owned(), relief::map(world, &view, &options)?)));
+    Ok(relief::contact_sheet(&panels.into_iter().collect::<Outcome<Vec<_>>>()?, PANELS / 2))
+}
+
+fn flows(world: &World) -> bool {
+    world.layer(Layer::MoltenLava).is_some_and(|lava| lava.data.iter().any(|&depth| depth > 0.0))
 }
 
 /// Keeps the last world of every raster that a run goes through.

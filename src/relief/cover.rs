@@ -5,7 +5,10 @@
 //! how wet and how warm it is. Wetness is De Martonne's index (1926), rain over temperature + 10. High land is pale and
 //! brown in every climate, so that ranges read as ranges.
 
-use super::palette::{Ramp, Rgb, hex, mix};
+use super::{
+    lava::Lava,
+    palette::{Ramp, Rgb, hex, mix},
+};
 use crate::{
     grid::Field,
     world::{Layer, World},
@@ -106,27 +109,44 @@ fn smooth(from: f32, to: f32, v: f32) -> f32 {
 /// The layers by which land is coloured where a world has them all.
 pub const LAYERS: [Layer; 3] = [Layer::Rain, Layer::Temperature, Layer::SnowLine];
 
-/// The climate of a picture's pixels.
+/// What covers the land at a picture's pixels: a climate's colours, lava.
 pub struct Cover {
-    layers: [Field<f32>; 3],
+    climate: Option<[Field<f32>; 3]>,
+    lava: Option<Lava>,
     tints: Tints,
     sea_m: f32,
 }
 
 impl Cover {
-    /// That of a world with weather, at a picture's raster.
+    /// That of a world with weather or lava, at a picture's raster.
     pub fn of(world: &World, bring: impl Fn(&Field<f32>) -> Field<f32>) -> Option<Self> {
-        let [rain, temperature, snow] = LAYERS.map(|layer| world.layer(layer));
-        let layers = [bring(rain?), bring(temperature?), bring(snow?)];
-        Some(Self { layers, tints: Tints::new(), sea_m: world.sea_level_m as f32 })
+        let climate = match LAYERS.map(|layer| world.layer(layer)) {
+            [Some(rain), Some(temperature), Some(snow)] => Some([rain, temperature, snow].map(&bring)),
+            _ => None,
+        };
+        let lava = Lava::of(world, bring);
+        let any = climate.is_some() || lava.is_some();
+        any.then(|| Self { climate, lava, tints: Tints::new(), sea_m: world.sea_level_m as f32 })
     }
 
-    /// The flat colour of a pixel's land.
-    pub fn at(&self, heights: &Field<f32>, x: usize, y: usize) -> Rgb {
+    /// Whether the land is coloured by its climate.
+    pub fn has_climate(&self) -> bool {
+        self.climate.is_some()
+    }
+
+    /// The flat colour of a pixel's land; `plain` gives that of its height alone.
+    pub fn at(&self, heights: &Field<f32>, x: usize, y: usize, plain: impl FnOnce() -> Rgb) -> Rgb {
         let (index, height_m) = (heights.grid.index(x, y), heights.at(x, y));
-        let [rain_mm, temperature_degc, snow_line_m] = [0, 1, 2].map(|layer: usize| self.layers[layer].data[index]);
-        let held = if height_m - snow_line_m > SNOW_M[0] { held(heights.gradient(x, y)) } else { 1.0 };
-        self.tints.at(Climate { rain_mm, temperature_degc, snow_line_m, held }, height_m, self.sea_m)
+        let land = match &self.climate {
+            None => plain(),
+            Some(layers) => {
+                let [rain_mm, temperature_degc, snow_line_m] = [0, 1, 2].map(|layer: usize| layers[layer].data[index]);
+                let held = if height_m - snow_line_m > SNOW_M[0] { held(heights.gradient(x, y)) } else { 1.0 };
+                self.tints.at(Climate { rain_mm, temperature_degc, snow_line_m, held }, height_m, self.sea_m)
+            }
+        };
+        self.lava.as_ref().map_or(land, |lava| lava.over(index, land))
+    }
     }
 }
 

@@ -67,6 +67,10 @@ fn scale_legend(spec: &Spec, scale: &Scale) -> Legend {
 /// The catalogue's range, so that pictures compare; another one where the values leave it or fill less than a fifth.
 /// A few odd cells (one in two hundred on either side) don't count.
 fn span(field: &Field<f32>, spec: &Spec) -> [f64; 2] {
+    // A colour stands for the same heat on every map.
+    if spec.palette == Palette::Heat {
+        return spec.range;
+    }
     let mut sorted = field.data.clone();
     sorted.par_sort_unstable_by(f32::total_cmp);
     let last = sorted.len().saturating_sub(1);

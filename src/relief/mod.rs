@@ -14,6 +14,7 @@ mod cover;
 pub mod film;
 mod frame;
 mod furniture;
+mod lava;
 mod layers;
 mod marks;
 mod overlay;
@@ -113,8 +114,8 @@ pub fn map(world: &World, view: &View, options: &Options) -> Result<RgbImage, Re
         View::Relief => {
             let cover = cover::Cover::of(world, |field| frame.continuous(field));
             let legend = match &cover {
-                Some(_) => furniture::Legend::climates(&scene),
-                None => furniture::Legend::heights(&scene),
+                Some(cover) if cover.has_climate() => furniture::Legend::climates(&scene),
+                _ => furniture::Legend::heights(&scene),
             };
             (tint::relief(&frame, &heights, &scene, cover.as_ref(), options), legend)
         }

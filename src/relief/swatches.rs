@@ -22,6 +22,11 @@ const AGE: [u32; 7] = [0x9c1430, 0xdf5a3c, 0xf6ad55, 0xf3e6a0, 0x93ccac, 0x4191b
 const SLOPE: [u32; 6] = [0xf4f2ec, 0xdbd5c8, 0xe5bd80, 0xdb7a4c, 0xa9272c, 0x590e26];
 const RAIN: [u32; 7] = [0xe3c58e, 0xefe3b4, 0xc4d9a0, 0x86c1a0, 0x489fae, 0x2d6fa6, 0x2b3f85];
 const WATER: [u32; 6] = [0xf1efe8, 0xc6dbe6, 0x8bb8d8, 0x4a88be, 0x245a9a, 0x112f66];
+/// A hundred degrees a step: cold ground is grey; from 500 to 900 to 1200 straight lines in linear light.
+const HEAT: [u32; 13] = [
+    0xb4b0a8, 0x8d8a84, 0x63615d, 0x403f3c, 0x1e1d1c, 0x000000, 0x890000, 0xbc0000, 0xe10000, 0xff0000, 0xff9c00,
+    0xffd500, 0xffff00,
+];
 /// Powers of ten that a logarithmic scale spans.
 const DECADES: f64 = 5.0;
 
@@ -32,6 +37,7 @@ fn codes(palette: Palette) -> &'static [u32] {
         Palette::Slope => &SLOPE,
         Palette::Rain => &RAIN,
         Palette::Water | Palette::Flow => &WATER,
+        Palette::Heat => &HEAT,
         _ => &SEQUENTIAL,
     }
 }

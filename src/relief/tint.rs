@@ -118,7 +118,8 @@ pub fn relief(
     crate::grid::map_cells(&mut pixels, frame.grid.width, |x, y| {
         let halo = || Brush::halo(coast.offshore_px.at(x, y), unit);
         let (height_m, land) = (heights.at(x, y), coast.land.at(x, y));
-        let ground = cover.filter(|_| land > 0.0).map(|cover| cover.at(heights, x, y));
+        let ground = cover.filter(|_| land > 0.0);
+        let ground = ground.map(|cover| cover.at(heights, x, y, || scene.land(height_m.max(sea))));
         let place = Place { height_m, tone: tone.at(x, y), land, ground };
         brush.pixel(scene, place, coast.line_px.at(x, y), halo)
     });

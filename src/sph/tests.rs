@@ -94,15 +94,9 @@ fn lists_hold_what_the_naive_loop_finds() {
     for (side, wrap) in [(9, None), (12, Some([12.0, 12.0])), (9, Some([13.6, 13.6])), (1, None)] {
         let (domain, radius) = (Domain { wrap_m: wrap }, 2.7f32);
         let (cloud, lists) = listed(block(side, 0.7), radius, domain);
-        for i in 0..cloud.len() {
-            let mut found: Vec<usize> = lists.of(i).collect();
+        for (i, naive) in naive_neighbours(&cloud, domain, radius).into_iter().enumerate() {
+            let mut found: Vec<u32> = lists.of(i).map(|j| j as u32).collect();
             found.sort_unstable();
-            let near = |j: usize| {
-                let d = [cloud.x[i] - cloud.x[j], cloud.y[i] - cloud.y[j], cloud.z[i] - cloud.z[j]];
-                let [x, y, z] = domain.nearest(d);
-                x * x + y * y + z * z < radius * radius
-            };
-            let naive: Vec<usize> = (0..cloud.len()).filter(|&j| j != i && near(j)).collect();
             assert_eq!(found, naive);
         }
         assert!(side == 1 || lists.entries() > 50 * cloud.len() / 2);

@@ -7,9 +7,11 @@
 
 pub mod ash;
 mod edifice;
+mod heat;
 mod island;
 pub mod lava;
 mod outlet;
+mod schedule;
 pub mod sheet;
 
 pub use ash::AshParams;
@@ -18,7 +20,9 @@ pub use edifice::{
 };
 pub use island::{IslandEntry, IslandParams, IslandProfile};
 pub use lava::LavaParams;
-pub use sheet::{LavaSheetParams, SheetKey, SheetVent};
+pub use outlet::VentParams;
+pub use schedule::{Key, Schedule, SheetKey};
+pub use sheet::LavaSheetParams;
 
 use crate::grid::Grid;
 

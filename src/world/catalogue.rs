@@ -30,6 +30,8 @@ pub enum Palette {
     Water,
     /// The same by powers of ten, for what flows.
     Flow,
+    /// What glows: cold grey, black at 500 degC, red at 900, yellow at 1200.
+    Heat,
     /// Distinct colours.
     Categorical,
 }
@@ -141,8 +143,10 @@ catalogue! {
     Suspended: "suspended", "Sediment in the water", "m", [0.0, 0.1], Sequential, Kind::Continuous;
     /// Depth of lava that flows.
     MoltenLava: "molten_lava", "Flowing lava", "m", [0.0, 10.0], Sequential, Kind::Continuous;
+    /// Mean temperature of the lava that flows; 0 where none does.
+    MoltenTemperature: "molten_temperature", "Temperature of flowing lava", "degC", [0.0, 1200.0], Heat, Kind::Continuous;
     /// Mean temperature at which the lava there froze; 0 where none did.
-    LavaTemperature: "lava_temperature", "Temperature of freezing lava", "degC", [0.0, 1200.0], Sequential, Kind::Continuous;
+    LavaTemperature: "lava_temperature", "Temperature of freezing lava", "degC", [0.0, 1200.0], Heat, Kind::Continuous;
     /// When lava last froze there, on the world's clock; 0 where none did.
     LavaDate: "lava_date", "Date of the lava", "yr", [0.0, 1000000.0], Sequential, Kind::Continuous;
     /// Ash that has fallen since the world began, as thick as it fell.

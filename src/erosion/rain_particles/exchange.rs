@@ -119,22 +119,22 @@ impl Exchange {
         let fade = 1.0 / (0.25 * params.lifespan_s);
         let (seen, stand) = (&*water, &*ground);
         let want = |i: usize| {
-            let (x, y) = (seen.cloud.x[i], seen.cloud.y[i]);
+            let (x, y) = (seen.swarm.cloud.x[i], seen.swarm.cloud.y[i]);
             if seen.gap[i] >= seen.spacing() as f32 || stand.holder(x, y).is_none() {
                 return 0.0;
             }
             let foot = stand.foot(x, y);
-            let (v, n) = ([seen.cloud.vx[i], seen.cloud.vy[i], seen.cloud.vz[i]], foot.normal);
+            let (v, n) = ([seen.swarm.cloud.vx[i], seen.swarm.cloud.vy[i], seen.swarm.cloud.vz[i]], foot.normal);
             let off = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
             let along = [v[0] - off * n[0], v[1] - off * n[1], v[2] - off * n[2]];
             let speed = (along[0] * along[0] + along[1] * along[1] + along[2] * along[2]).sqrt() as f64;
             let strength = (speed - params.least_speed_m_per_s).max(0.0) * foot.sine() as f64;
-            let capacity = full * strength * (seen.life_s[i] as f64 * fade).clamp(0.0, 1.0);
-            share * (capacity - seen.load_m3[i])
+            let capacity = full * strength * (seen.swarm.clock_s[i] as f64 * fade).clamp(0.0, 1.0);
+            share * (capacity - seen.swarm.load[i])
         };
-        (0..seen.cloud.len()).into_par_iter().with_min_len(1024).map(want).collect_into_vec(&mut self.wants);
+        (0..seen.swarm.len()).into_par_iter().with_min_len(1024).map(want).collect_into_vec(&mut self.wants);
         let asked = |&(particle, &want): &(usize, &f64)| {
-            let nine = Nine::at(&grid, seen.cloud.x[particle], seen.cloud.y[particle]);
+            let nine = Nine::at(&grid, seen.swarm.cloud.x[particle], seen.swarm.cloud.y[particle]);
             Ask { particle: particle as u32, want, nine }
         };
         let asking: Vec<_> = self.wants.iter().enumerate().filter(|(_, want)| **want != 0.0).collect();
@@ -170,7 +170,7 @@ impl Exchange {
         };
         self.asks.par_iter().with_min_len(256).map(got).collect_into_vec(&mut self.got);
         for (ask, got) in self.asks.iter().zip(&self.got) {
-            water.load_m3[ask.particle as usize] += got;
+            water.swarm.load[ask.particle as usize] += got;
         }
         for (&cell, net) in touched.iter().zip(net) {
             self.put(bed, cell as usize, net);

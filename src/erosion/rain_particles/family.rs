@@ -3,6 +3,7 @@
 use crate::{
     grid::{Edges, Field, Grid, sum_f64},
     noise::Key,
+    sph::Swarm,
 };
 
 use super::super::bed::{Bed, Family, Moved, Part, Saved};
@@ -76,7 +77,7 @@ impl RainParticles {
         let ground = Ground::new(bed);
         let (d, datum) = (self.water.spacing(), ground.datum_m as f64);
         let [nx, ny, nz] = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / d).round() as usize);
-        let before = self.water.cloud.len();
+        let before = self.water.swarm.len();
         for (z, y, x) in (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| (z, y, x)))) {
             // Off the lattice by a little: water is no crystal.
             let mut stream = self.rain.key.with(self.rain.drawn).stream();
@@ -84,24 +85,24 @@ impl RainParticles {
             let [x, y, z] = [low[0] + at[0], low[1] + at[1], low[2] + at[2] - datum].map(|place| place as f32);
             // Less than half a spacing: the lowest layer of a box that stands on the ground counts.
             if ground.holder(x, y).is_some() && ground.foot(x, y).gap(z) > 0.3 * d as f32 {
-                self.water.add([x, y, z], self.params.lifespan_s as f32, self.rain.drawn);
+                self.water.swarm.add([[x, y, z], [0.0; 3]], self.params.lifespan_s as f32, 0.0, self.rain.drawn);
                 self.rain.drawn += 1;
             }
         }
-        self.water.cloud.len() - before
+        self.water.swarm.len() - before
     }
 
     /// The particles.
     pub fn seen(&self) -> Seen<'_> {
-        let Water { cloud, load_m3, life_s, born, .. } = &self.water;
+        let Swarm { cloud, load, clock_s, born, .. } = &self.water.swarm;
         Seen {
             x_m: &cloud.x,
             y_m: &cloud.y,
             z_m: &cloud.z,
             datum_m: self.datum_m,
             velocity_m_per_s: [&cloud.vx, &cloud.vy, &cloud.vz],
-            load_m3,
-            life_s,
+            load_m3: load,
+            life_s: clock_s,
             born,
         }
     }
@@ -130,7 +131,7 @@ impl RainParticles {
 
     /// Water that passes cells, m³/s: what stands on a cell, by the time in which it crosses that. Spread as the depth.
     pub fn discharge(&self) -> Field<f32> {
-        let (cloud, per_m) = (&self.water.cloud, self.water.volume_m3() / self.grid.cell_m);
+        let (cloud, per_m) = (&self.water.swarm.cloud, self.water.volume_m3() / self.grid.cell_m);
         let along = |i: usize| per_m * libm::hypot(f64::from(cloud.vx[i]), f64::from(cloud.vy[i]));
         self.last.as_ref().map_or_else(|| self.spread(along), |[_, flow]| flow.clone())
     }
@@ -141,7 +142,7 @@ impl RainParticles {
         let mut sum = vec![0.0f64; grid.cells()];
         // A particle reaches about as far as its kernel, or a cell.
         let reach = (1.2 * self.water.spacing()).max(grid.cell_m) / grid.cell_m;
-        let cloud = &self.water.cloud;
+        let cloud = &self.water.swarm.cloud;
         for (i, (&x, &y)) in cloud.x.iter().zip(&cloud.y).enumerate() {
             let at = [x, y].map(|place| place as f64 / grid.cell_m - 0.5);
             let mut covered = [(0, 0.0); 25];
@@ -195,14 +196,14 @@ impl Family for RainParticles {
                 moved.water_in_m3 += born as f64 * volume;
                 self.water.sort();
             }
-            let dt = if self.water.cloud.is_empty() {
+            let dt = if self.water.swarm.is_empty() {
                 // Until there is enough for a particle.
                 let wait = if rate > 0.0 { (volume - self.rain.owed_m3).max(0.0) / rate } else { left };
                 wait.max(idle).min(left)
             } else {
                 let dt = self.water.block(&ground, left);
                 self.exchange.run(&self.params, bed, &mut ground, &mut self.water, dt);
-                for life in &mut self.water.life_s {
+                for life in &mut self.water.swarm.clock_s {
                     *life -= dt as f32;
                 }
                 dt
@@ -215,19 +216,20 @@ impl Family for RainParticles {
     }
 
     fn carried_m3(&self) -> f64 {
-        self.water.load_m3.iter().sum::<f64>() + self.exchange.waiting_m3(&self.grid)
+        self.water.swarm.load.iter().sum::<f64>() + self.exchange.waiting_m3(&self.grid)
     }
 
     fn settle(&mut self, bed: &mut Bed) -> Moved {
         self.last = Some([self.depth_m(), self.discharge()]);
-        for life in &mut self.water.life_s {
+        for life in &mut self.water.swarm.clock_s {
             *life = 0.0;
         }
         let mut ground = Ground::new(bed);
         // Those over an open rim lay down on it: there is no step left to count them in.
         // Inside by more than what rounding moves a place by, when it is counted in cells.
         let extent = self.grid.extent_m().map(|extent| (extent * (1.0 - 1e-6)) as f32);
-        for (values, extent) in [(&mut self.water.cloud.x, extent[0]), (&mut self.water.cloud.y, extent[1])] {
+        for (values, extent) in [(&mut self.water.swarm.cloud.x, extent[0]), (&mut self.water.swarm.cloud.y, extent[1])]
+        {
             for value in values {
                 *value = value.clamp(0.0, extent);
             }
@@ -249,13 +251,13 @@ impl Family for RainParticles {
             self.exchange.adrift_m3.to_bits(),
             water.sound.to_bits(),
             self.datum_m.to_bits() as u64,
-            water.cloud.len() as u64,
+            water.swarm.len() as u64,
         ];
         let mut word = |word: u64| blob.extend(word.to_le_bytes());
         words.into_iter().for_each(&mut word);
-        water.born.iter().copied().for_each(&mut word);
-        water.load_m3.iter().map(|load| load.to_bits()).for_each(&mut word);
-        for values in water.cloud.arrays().into_iter().chain([&water.life_s]) {
+        water.swarm.born.iter().copied().for_each(&mut word);
+        water.swarm.load.iter().map(|load| load.to_bits()).for_each(&mut word);
+        for values in water.swarm.cloud.arrays().into_iter().chain([&water.swarm.clock_s]) {
             blob.extend(values.iter().flat_map(|value| value.to_le_bytes()));
         }
         Saved { fields: vec![(REST, self.exchange.rest.clone())], blob }
@@ -290,7 +292,8 @@ impl Family for RainParticles {
         self.exchange.rest = rest;
         self.water.sound = f64::from_bits(word(4)?);
         self.datum_m = f32::from_bits(word(5)? as u32);
-        (self.water.born, self.water.load_m3, self.water.cloud, self.water.life_s) = (born, load_m3, cloud, life_s);
+        let swarm = &mut self.water.swarm;
+        (swarm.cloud, swarm.clock_s, swarm.load, swarm.born) = (cloud, life_s, load_m3, born);
         Some(())
     }
 }

@@ -44,7 +44,7 @@ impl Rain {
         water: &mut Water,
     ) -> usize {
         let volume = water.volume_m3();
-        let alive = water.cloud.len();
+        let alive = water.swarm.len();
         let free = (params.particles as usize).saturating_sub(alive);
         let drops = ((self.owed_m3 / volume) as usize).min(free);
         self.owed_m3 = (self.owed_m3 - drops as f64 * volume).min(volume);
@@ -66,12 +66,12 @@ impl Rain {
                         let d = [0, 1, 2].map(|axis| at[axis] - other[axis]);
                         d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < apart * apart
                     };
-                    !water.any_within(at, apart) && !fallen.iter().any(near)
+                    !water.swarm.any_within(at, apart) && !fallen.iter().any(near)
                 })
             });
             if let Some(at) = found {
                 fallen.push(at);
-                water.add(at, life as f32, self.drawn);
+                water.swarm.add([at, [0.0; 3]], life as f32, 0.0, self.drawn);
             }
             self.drawn += 1;
         }
@@ -98,29 +98,29 @@ fn place(params: &RainParticlesParams, bed: &Bed, [a, b]: [f64; 2]) -> Option<[f
 /// Takes away water that left over an open rim, reached the sea or ended, and lays down what it carried.
 pub(super) fn cull(bed: &mut Bed, ground: &mut Ground, water: &mut Water, exchange: &mut Exchange) -> Moved {
     let mut moved = Moved::default();
-    let (mut kept, mut changed) = (Vec::with_capacity(water.cloud.len()), Vec::new());
+    let (mut kept, mut changed) = (Vec::with_capacity(water.swarm.len()), Vec::new());
     let open = bed.grid.edges == Edges::Open;
     let extent = bed.grid.extent_m().map(|extent| extent as f32);
-    for i in 0..water.cloud.len() {
-        let at = [water.cloud.x[i], water.cloud.y[i]];
+    for i in 0..water.swarm.len() {
+        let at = [water.swarm.cloud.x[i], water.swarm.cloud.y[i]];
         let holder = ground.holder(at[0], at[1]);
         let left = open && holder.is_none();
         let drowned = holder.is_some_and(|cell| bed.height(cell) < bed.sea_m);
-        if !left && !drowned && water.life_s[i] > 0.0 {
+        if !left && !drowned && water.swarm.clock_s[i] > 0.0 {
             kept.push(i as u32);
             continue;
         }
         moved.water_left_m3 += water.volume_m3();
         if left {
-            moved.rock_left_m3 += water.load_m3[i];
+            moved.rock_left_m3 += water.swarm.load[i];
         } else {
             // Rounding may put a particle of a closed or wrapping world on the very rim.
             let at = [0, 1].map(|axis| at[axis].clamp(0.0, extent[axis].next_down()));
-            exchange.drop_load(bed, at, water.load_m3[i], &mut changed);
+            exchange.drop_load(bed, at, water.swarm.load[i], &mut changed);
         }
     }
-    if kept.len() < water.cloud.len() {
-        water.reorder(&kept);
+    if kept.len() < water.swarm.len() {
+        water.swarm.reorder(&kept);
         ground.renew(bed, &changed);
     }
     moved

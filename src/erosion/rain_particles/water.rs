@@ -4,10 +4,7 @@ use rayon::prelude::*;
 
 use crate::{
     grid::{Edges, Grid},
-    sph::{
-        Cells, Cloud, Domain, Forces, Kernel, Liquid, Lists, RUN, Reader, Scale, Touch, WendlandC2, Work, gather,
-        widest,
-    },
+    sph::{Cloud, Forces, Kernel, Liquid, RUN, Reader, Scale, Swarm, Touch, WendlandC2, Work, widest},
 };
 
 use super::{
@@ -27,30 +24,19 @@ pub(super) struct Water {
     params: RainParticlesParams,
     grid: Grid,
     spacing: f64,
-    domain: Domain,
     touch: Touch,
     liquid: Liquid,
     /// Speed of sound of the last block, m/s.
     pub(super) sound: f64,
     /// Sub-steps, and steps of single particles, since it was made.
     pub(super) work: [u64; 2],
-    /// Where they are and how fast.
-    pub(super) cloud: Cloud,
-    /// How long each still lives, s.
-    pub(super) life_s: Vec<f32>,
-    /// Rock that each carries, in volume of bed, m³.
-    pub(super) load_m3: Vec<f64>,
-    /// How many were born before it.
-    pub(super) born: Vec<u64>,
+    /// The particles: their clocks are what is left of their lives, their loads the rock that they carry, in m³ of bed.
+    pub(super) swarm: Swarm,
     /// Distance from the ground, m.
     pub(super) gap: Vec<f32>,
     normal: [Vec<f32>; 3],
     beyond: Vec<f32>,
     forces: Forces,
-    cells: Cells,
-    lists: Lists,
-    order: Vec<u32>,
-    spare: (Vec<f32>, Vec<f64>, Vec<u64>),
 }
 
 /// The greatest of what particles did in a sub-step.
@@ -75,14 +61,10 @@ impl Water {
     pub(super) fn new(params: &RainParticlesParams, grid: Grid) -> Self {
         let spacing = params.spacing(&grid);
         let scale = Scale::new::<WendlandC2>(spacing, RATIO);
-        let extent = grid.extent_m().map(|extent| extent as f32);
-        // A world so small that a particle would meet itself does not wrap for pairs.
-        let wide = extent.iter().all(|&extent| extent > 4.0 * scale.support_m());
         Self {
             params: params.clone(),
             grid,
             spacing,
-            domain: Domain { wrap_m: (grid.edges == Edges::Wrap && wide).then_some(extent) },
             touch: Touch {
                 radius: (0.5 * spacing) as f32,
                 restitution: params.restitution as f32,
@@ -98,18 +80,11 @@ impl Water {
             },
             sound: 0.0,
             work: [0; 2],
-            cloud: Cloud::default(),
-            life_s: Vec::new(),
-            load_m3: Vec::new(),
-            born: Vec::new(),
+            swarm: Swarm::new(&grid, scale.support_m()),
             gap: Vec::new(),
             normal: Default::default(),
             beyond: Vec::new(),
             forces: Forces::default(),
-            cells: Cells::default(),
-            lists: Lists::default(),
-            order: Vec::new(),
-            spare: Default::default(),
         }
     }
 
@@ -129,57 +104,20 @@ impl Water {
         &self.forces.density
     }
 
-    /// One particle more.
-    pub(super) fn add(&mut self, at: [f32; 3], life_s: f32, born: u64) {
-        self.cloud.push(at, [0.0; 3]);
-        self.life_s.push(life_s);
-        self.load_m3.push(0.0);
-        self.born.push(born);
-    }
-
-    /// Keeps the particles `order`, in that order.
-    pub(super) fn reorder(&mut self, order: &[u32]) {
-        let (narrow, wide, counts) = &mut self.spare;
-        self.cloud.reorder(order, narrow);
-        gather(&mut self.life_s, order, narrow);
-        gather(&mut self.load_m3, order, wide);
-        gather(&mut self.born, order, counts);
-    }
-
     fn radius(&self) -> f32 {
         self.liquid.scale.support_m() + (SKIN * self.spacing) as f32
     }
 
     /// Brings particles back into a world that wraps and sorts them by cell.
     pub(super) fn sort(&mut self) {
-        if self.grid.edges == Edges::Wrap {
-            let extent = self.grid.extent_m().map(|extent| extent as f32);
-            let wrap = |values: &mut [f32], extent: f32| {
-                for value in values.iter_mut().filter(|value| **value < 0.0 || **value >= extent) {
-                    let back = *value - extent * (*value / extent).floor();
-                    *value = if back < extent { back.max(0.0) } else { 0.0 };
-                }
-            };
-            wrap(&mut self.cloud.x, extent[0]);
-            wrap(&mut self.cloud.y, extent[1]);
-        }
-        let mut order = std::mem::take(&mut self.order);
-        let radius = self.radius();
-        self.cells.sort([&self.cloud.x, &self.cloud.y, &self.cloud.z], radius, self.domain, &mut order);
-        self.reorder(&order);
-        self.order = order;
-    }
-
-    /// Whether water stands within `radius`, at most a spacing, of a place; right after [`Self::sort`].
-    pub(super) fn any_within(&self, place: [f32; 3], radius: f32) -> bool {
-        self.cells.any_within([&self.cloud.x, &self.cloud.y, &self.cloud.z], place, radius)
+        self.swarm.sort(&self.grid, self.radius());
     }
 
     /// Moves sorted particles for up to `left_s`: as many sub-steps as one list serves. Gives the time that has passed.
     pub(super) fn block(&mut self, ground: &Ground, left_s: f64) -> f64 {
-        let n = self.cloud.len();
+        let n = self.swarm.len();
         let radius = self.radius();
-        self.lists.make(&self.cells, &self.cloud, radius);
+        self.swarm.meet(radius);
         for values in self.normal.iter_mut().chain([&mut self.gap, &mut self.beyond]) {
             values.resize(n, 0.0);
         }
@@ -200,8 +138,19 @@ impl Water {
             let last = left <= limit;
             let dt = if last { left } else { limit };
             self.work = [self.work[0] + 1, self.work[1] + n as u64];
-            self.forces.densities::<WendlandC2>(&self.cloud, &self.lists, self.domain, &self.liquid, &self.beyond);
-            self.forces.accelerations::<WendlandC2>(&self.cloud, &self.lists, self.domain, &self.liquid);
+            self.forces.densities::<WendlandC2>(
+                &self.swarm.cloud,
+                &self.swarm.lists,
+                self.swarm.domain,
+                &self.liquid,
+                &self.beyond,
+            );
+            self.forces.accelerations::<WendlandC2>(
+                &self.swarm.cloud,
+                &self.swarm.lists,
+                self.swarm.domain,
+                &self.liquid,
+            );
             most = self.walk(ground, dt as f32, top as f32);
             done = if last { left_s } else { done + dt };
             if last || (most.way2 as f64).sqrt() > half {
@@ -213,7 +162,7 @@ impl Water {
 
     /// Finds the ground under everyone.
     fn stand(&mut self, ground: &Ground) -> Most {
-        let cloud = &self.cloud;
+        let cloud = &self.swarm.cloud;
         let [nx, ny, nz] = &mut self.normal;
         (
             self.gap.par_chunks_mut(RUN),
@@ -244,11 +193,11 @@ impl Water {
     fn walk(&mut self, ground: &Ground, dt: f32, top: f32) -> Most {
         let extent = self.grid.extent_m().map(|extent| extent as f32);
         let walls = (self.grid.edges == Edges::Closed).then_some(extent);
-        let [fx, fy, fz] = self.lists.made_for();
+        let [fx, fy, fz] = self.swarm.lists.made_for();
         let from = [fx, fy, fz];
         let pull = [0, 1, 2].map(|axis| &self.forces.pull[axis][..]);
         let (touch, h, push) = (self.touch, self.liquid.scale.h_m, &self.forces.push[..]);
-        let Cloud { x, y, z, vx, vy, vz } = &mut self.cloud;
+        let Cloud { x, y, z, vx, vy, vz } = &mut self.swarm.cloud;
         let [nx, ny, nz] = &mut self.normal;
         let place = (x.par_chunks_mut(RUN), y.par_chunks_mut(RUN), z.par_chunks_mut(RUN));
         let speed = (vx.par_chunks_mut(RUN), vy.par_chunks_mut(RUN), vz.par_chunks_mut(RUN));

@@ -124,7 +124,7 @@ impl Animation {
 
     /// What a film keeps of a world.
     pub fn shot(&self, world: &World) -> Result<Shot, ReliefError> {
-        Shot::of(world, &self.view, &self.resampler, self.map)
+        Shot::of(world, &self.view, &self.resampler, (self.map, &self.scene))
     }
 
     /// Draws the picture at `share` of the way between two shots: rows of red, green, blue from the top left.

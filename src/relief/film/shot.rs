@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{
-    super::{ReliefError, View, absent, cover::Cover, rivers::Waters, shade::shade},
+    super::{ReliefError, View, absent, cover::Cover, palette::Rgb, rivers::Waters, shade::shade, tint::Scene},
     resample::Resampler,
 };
 use crate::{
@@ -20,7 +20,7 @@ pub struct Shot {
     pub(super) tone: Vec<f32>,
     /// The values of the layer that is shown, where it is not the relief.
     pub(super) values: Option<Vec<f32>>,
-    /// The land's flat colours in linear light, red, green and blue apart, where there is weather.
+    /// The land's flat colours in linear light, red, green and blue apart, where there is weather or lava.
     pub(super) ground: Option<[Vec<f32>; 3]>,
     /// Rivers and lakes, where the relief is shown and there are any.
     pub(super) waters: Option<Waters>,
@@ -31,7 +31,12 @@ pub struct Shot {
 }
 
 impl Shot {
-    pub(super) fn of(world: &World, view: &View, resampler: &Resampler, map: Grid) -> Result<Self, ReliefError> {
+    pub(super) fn of(
+        world: &World,
+        view: &View,
+        resampler: &Resampler,
+        (map, scene): (Grid, &Scene),
+    ) -> Result<Self, ReliefError> {
         let column: Vec<&Field<f32>> = Layer::COLUMN.iter().filter_map(|&layer| world.layer(layer)).collect();
         let height = resampler.sum(&column);
         if !height.data.iter().all(|v| v.is_finite()) {
@@ -47,7 +52,9 @@ impl Shot {
         let sea_m = world.sea_level_m as f32;
         let cover = Some(view).filter(|view| **view == View::Relief);
         let cover = cover.and_then(|_| Cover::of(world, |field| resampler.sum(&[field])));
-        let ground = cover.map(|cover| colours(&cover, &height));
+        // The scene is over a sea at zero.
+        let plain = |height_m: f32| scene.land((height_m - sea_m).max(0.0));
+        let ground = cover.map(|cover| colours(&cover, &height, plain));
         let has_land = height.data.iter().any(|&h| h > sea_m);
         let tone = shade(&height, |h| h > sea_m || !has_land, None).data;
         Ok(Self { height, tone, values, ground, waters, sea_m, time_yr: world.time_yr })
@@ -73,13 +80,13 @@ impl Shot {
 }
 
 /// The land's flat colours, red, green and blue apart.
-fn colours(cover: &Cover, height: &Field<f32>) -> [Vec<f32>; 3] {
+fn colours(cover: &Cover, height: &Field<f32>, plain: impl Fn(f32) -> Rgb + Sync) -> [Vec<f32>; 3] {
     let (cells, width) = (height.grid.cells(), height.grid.width);
     let [mut red, mut green, mut blue] = [0; 3].map(|_| vec![0.0; cells]);
     let rows = red.par_chunks_mut(width).zip(green.par_chunks_mut(width)).zip(blue.par_chunks_mut(width));
     rows.enumerate().for_each(|(y, ((red, green), blue))| {
         for x in 0..width {
-            [red[x], green[x], blue[x]] = cover.at(height, x, y);
+            [red[x], green[x], blue[x]] = cover.at(height, x, y, || plain(height.at(x, y)));
         }
     });
     [red, green, blue]

@@ -4,7 +4,7 @@ use super::{column::Fall, params::AshParams};
 use crate::{
     grid::{Field, Grid, map_cells, sum_rows},
     process::{Context, Placement, Process, ProcessError, State, Step},
-    volcano::outlet::outlets,
+    volcano::outlet::found,
     world::{Layer, Matter, World},
 };
 
@@ -78,7 +78,7 @@ impl Process for Stage {
         let grid = world.grid;
         let columns = match self.params.at_km {
             Some(at_km) => vec![at_km.map(|km| 1e3 * km)],
-            None => outlets(world).iter().map(|outlet| outlet.at_m).collect(),
+            None => found(world, 0.0).iter().map(|outlet| outlet.from_m).collect(),
         };
         let each_m3 = 1e9 * self.params.volume_km3 / columns.len() as f64;
         let mut thick = Field::filled(grid, 0.0f32);

@@ -6,12 +6,16 @@ use super::{
     land::Land,
     law::Law,
     params::LavaParams,
-    schedule::Schedule,
-    vents::{APART, Source, Vent},
+    vents::{APART, Source},
 };
 use crate::{
     grid::{Edges, Field},
     noise::Key,
+    sph::Swarm,
+    volcano::{
+        outlet::{Outlet, outlets},
+        schedule::Schedule,
+    },
     world::{Mask, World},
 };
 
@@ -58,7 +62,7 @@ impl Eruption {
     pub fn new(params: &LavaParams, world: &World, mask: Option<&Mask>, key: Key) -> Result<Self, String> {
         let law = Law::new(params, &world.grid);
         law.check(&world.grid)?;
-        let mut vents = params.vents(world, &law)?;
+        let mut vents = outlets(&params.vent, world, 2.0 * law.spacing)?;
         if let Some(mask) = mask {
             let mask: Field<f32> = mask.evaluate(world).map_err(|e| e.to_string())?;
             for vent in &mut vents {
@@ -70,7 +74,7 @@ impl Eruption {
     }
 
     /// From what it is made of.
-    pub(super) fn at(law: Law, schedule: Schedule, ground: (Land, f64), vents: Vec<Vent>, key: Key) -> Self {
+    pub(super) fn at(law: Law, schedule: Schedule, ground: (Land, f64), vents: Vec<Outlet>, key: Key) -> Self {
         let (land, sea_m) = ground;
         let grid = *land.mesh.grid();
         let mut flow = Flow::new(law.clone(), grid);
@@ -88,7 +92,7 @@ impl Eruption {
             self.emit();
             let left = to_s - now;
             let dt =
-                if self.flow.cloud.is_empty() { self.pause(now, left) } else { self.flow.block(&self.land, left)? };
+                if self.flow.swarm.is_empty() { self.pause(now, left) } else { self.flow.block(&self.land, left)? };
             // The last block ends where the run does.
             let next = if dt >= left { to_s } else { now + dt };
             let due = self.schedule.particles(now, next, self.law.volume_m3());
@@ -113,11 +117,16 @@ impl Eruption {
     /// Lets those come out that are due and find room.
     pub(super) fn emit(&mut self) {
         for k in 0..self.sources.len() {
-            let room = (self.law.params.max_particles as usize).saturating_sub(self.flow.cloud.len());
+            let room = (self.law.params.max_particles as usize).saturating_sub(self.flow.swarm.len());
             let (near, mut places) = ((APART * self.law.spacing) as f32, Vec::new());
             let (flow, law, land) = (&self.flow, &self.law, &self.land);
             let key = self.key.with(k as u64).with(self.drawn);
-            self.sources[k].emit((&land.mesh, law, key), room, |at| !flow.any_within(at, near), |at| places.push(at));
+            self.sources[k].emit(
+                (&land.mesh, law, key),
+                room,
+                |at| !flow.swarm.any_within(at, near),
+                |at| places.push(at),
+            );
             if places.is_empty() {
                 continue;
             }
@@ -132,7 +141,7 @@ impl Eruption {
 
     /// Turns to ground what is rock and lies on it, and forgets what left the map.
     fn freeze(&mut self) {
-        let n = self.flow.cloud.len();
+        let n = self.flow.swarm.len();
         let rock = match self.law.params.freeze && self.flow.has_ground() {
             true => self.flow.frozen(&self.land),
             false => vec![false; n],
@@ -158,10 +167,10 @@ impl Eruption {
 
     /// Sorts particles by what becomes of them; `fate` is told whether one left the map, and which.
     fn sift(&mut self, fate: impl Fn((bool, usize)) -> Fate) {
-        let n = self.flow.cloud.len();
+        let n = self.flow.swarm.len();
         let (mut stays, mut rock) = (Vec::with_capacity(n), Vec::new());
         for i in 0..n {
-            let at = [self.flow.cloud.x[i], self.flow.cloud.y[i]];
+            let at = [self.flow.swarm.cloud.x[i], self.flow.swarm.cloud.y[i]];
             match fate((self.is_out(i), i)) {
                 Fate::Stays => stays.push(i as u32),
                 Fate::Rock => rock.push((at, self.flow.temperature(i))),
@@ -173,24 +182,24 @@ impl Eruption {
         }
         self.froze += rock.len() as u64;
         self.land.lay(&rock, self.law.volume_m3(), 1.2 * self.law.spacing);
-        self.flow.reorder(&stays);
+        self.flow.swarm.reorder(&stays);
     }
 
     fn is_out(&self, i: usize) -> bool {
-        let cloud = &self.flow.cloud;
+        let cloud = &self.flow.swarm.cloud;
         let open = self.land.mesh.grid().edges == Edges::Open;
         (open && self.land.mesh.holder(cloud.x[i], cloud.y[i]).is_none()) || cloud.z[i] < -DEEP_M
     }
 
     /// The particles.
     pub fn seen(&self) -> Seen<'_> {
-        let Flow { cloud, age_s, born, .. } = &self.flow;
+        let Swarm { cloud, clock_s, born, .. } = &self.flow.swarm;
         Seen {
             place_m: [&cloud.x, &cloud.y, &cloud.z],
             datum_m: self.land.datum_m,
             velocity_m_per_s: [&cloud.vx, &cloud.vy, &cloud.vz],
             degc: (0..cloud.len()).map(|i| self.flow.temperature(i)).collect(),
-            age_s,
+            age_s: clock_s,
             born,
         }
     }

@@ -7,15 +7,13 @@ use super::{
     engine::{Engine, Most, Setting, Stiffness},
     heat::{Lost, Place},
     land::Land,
-    law::{GRAVITY, Law, SEA},
+    law::{Law, SEA},
     stride::{Stride, fresh_speeds, half_ahead},
 };
 use crate::{
     grid::{Edges, Grid},
-    sph::{
-        Around, Cells, Cloud, CubicSpline, DesbrunGascuel, Domain, Kernel, Liquid, Lists, RUN, WendlandC2, gather,
-        look_around,
-    },
+    sph::{Around, Cloud, CubicSpline, DesbrunGascuel, Kernel, Liquid, RUN, Swarm, WendlandC2, look_around},
+    volcano::heat::GRAVITY,
 };
 
 /// How far lists reach beyond the support, in spacings.
@@ -33,7 +31,6 @@ const MANY: f64 = 3.0;
 pub(super) struct Flow {
     pub(super) law: Law,
     pub(super) grid: Grid,
-    pub(super) domain: Domain,
     /// Weight, m/s²: down, except in tests.
     pub(super) gravity: [f32; 3],
     /// Height of the sea over the land's datum, m.
@@ -42,14 +39,8 @@ pub(super) struct Flow {
     pub(super) sound: f64,
     /// Steps, and steps of single particles, since it was made.
     pub(super) work: [u64; 2],
-    /// Where they are and how fast.
-    pub(super) cloud: Cloud,
-    /// Enthalpy, J/kg.
-    pub(super) heat: Vec<f64>,
-    /// Since it came out, s.
-    pub(super) age_s: Vec<f32>,
-    /// How many came out before it.
-    pub(super) born: Vec<u64>,
+    /// The particles: their clocks are the time since they came out, their loads the enthalpy of a kilogram, J/kg.
+    pub(super) swarm: Swarm,
     /// Heat that has left, J.
     pub(super) lost: Lost,
     pub(super) engine: Engine,
@@ -59,31 +50,20 @@ pub(super) struct Flow {
     half: Cloud,
     around: Vec<Around>,
     degc: Vec<f64>,
-    cells: Cells,
-    lists: Lists,
-    order: Vec<u32>,
-    spare: (Vec<f32>, Vec<f64>, Vec<u64>),
 }
 
 impl Flow {
     /// No lava yet.
     pub(super) fn new(law: Law, grid: Grid) -> Self {
-        let extent = grid.extent_m().map(|extent| extent as f32);
-        // A world so small that a particle would meet itself does not wrap for pairs.
-        let wide = extent.iter().all(|&extent| extent > 4.0 * law.scale.support_m());
         let weight = if law.params.gravity { -GRAVITY as f32 } else { 0.0 };
         Self {
-            domain: Domain { wrap_m: (grid.edges == Edges::Wrap && wide).then_some(extent) },
+            swarm: Swarm::new(&grid, law.scale.support_m()),
             law,
             grid,
             gravity: [0.0, 0.0, weight],
             sea: f32::NEG_INFINITY,
             sound: 0.0,
             work: [0; 2],
-            cloud: Cloud::default(),
-            heat: Vec::new(),
-            age_s: Vec::new(),
-            born: Vec::new(),
             lost: Lost::default(),
             engine: Engine::default(),
             stiffness: Stiffness::default(),
@@ -92,28 +72,12 @@ impl Flow {
             half: Cloud::default(),
             around: Vec::new(),
             degc: Vec::new(),
-            cells: Cells::default(),
-            lists: Lists::default(),
-            order: Vec::new(),
-            spare: Default::default(),
         }
     }
 
     /// One particle more.
     pub(super) fn add(&mut self, at: [f32; 3], velocity: [f32; 3], degc: f64, born: u64) {
-        self.cloud.push(at, velocity);
-        self.heat.push(self.law.enthalpy(degc));
-        self.age_s.push(0.0);
-        self.born.push(born);
-    }
-
-    /// Keeps the particles `order`, in that order.
-    pub(super) fn reorder(&mut self, order: &[u32]) {
-        let (narrow, wide, counts) = &mut self.spare;
-        self.cloud.reorder(order, narrow);
-        gather(&mut self.age_s, order, narrow);
-        gather(&mut self.heat, order, wide);
-        gather(&mut self.born, order, counts);
+        self.swarm.add([at, velocity], 0.0, self.law.enthalpy(degc), born);
     }
 
     fn radius(&self) -> f32 {
@@ -122,25 +86,7 @@ impl Flow {
 
     /// Brings particles back into a world that wraps and sorts them by cell.
     pub(super) fn sort(&mut self) {
-        if self.grid.edges == Edges::Wrap {
-            let extent = self.grid.extent_m().map(|extent| extent as f32);
-            for (values, extent) in [(&mut self.cloud.x, extent[0]), (&mut self.cloud.y, extent[1])] {
-                for value in values.iter_mut().filter(|value| **value < 0.0 || **value >= extent) {
-                    let back = *value - extent * (*value / extent).floor();
-                    *value = if back < extent { back.max(0.0) } else { 0.0 };
-                }
-            }
-        }
-        let mut order = std::mem::take(&mut self.order);
-        let radius = self.radius();
-        self.cells.sort([&self.cloud.x, &self.cloud.y, &self.cloud.z], radius, self.domain, &mut order);
-        self.reorder(&order);
-        self.order = order;
-    }
-
-    /// Whether lava is within `radius`, at most a spacing, of a place; right after [`Self::sort`].
-    pub(super) fn any_within(&self, place: [f32; 3], radius: f32) -> bool {
-        self.cells.any_within([&self.cloud.x, &self.cloud.y, &self.cloud.z], place, radius)
+        self.swarm.sort(&self.grid, self.radius());
     }
 
     /// Moves and cools sorted particles for up to `left_s`: as many steps as one list serves. Gives the time that has passed,
@@ -155,9 +101,9 @@ impl Flow {
 
     fn block_of<K: Kernel>(&mut self, land: &Land, left_s: f64) -> Result<f64, String> {
         let radius = self.radius();
-        self.lists.make(&self.cells, &self.cloud, radius);
+        self.swarm.meet(radius);
         let mut setting = self.setting();
-        let mut most = self.engine.stand::<K>(&self.cloud, &land.mesh, &setting);
+        let mut most = self.engine.stand::<K>(&self.swarm.cloud, &land.mesh, &setting);
         self.tune(&most);
         setting.liquid.sound_m_per_s = self.sound as f32;
         let stiffest = self.stiffen(setting.sharpness_s);
@@ -170,7 +116,7 @@ impl Flow {
             let last = left <= pace.dt;
             let dt = if last { left } else { pace.dt };
             if step > 0 {
-                self.engine.stand::<K>(&self.cloud, &land.mesh, &setting);
+                self.engine.stand::<K>(&self.swarm.cloud, &land.mesh, &setting);
             }
             most = self.step::<K>(land, &setting, dt as f32);
             self.check(&most, dt)?;
@@ -180,14 +126,14 @@ impl Flow {
             }
         }
         self.cool::<K>(land, &setting, done);
-        self.age_s.iter_mut().for_each(|age| *age += done as f32);
+        self.swarm.clock_s.iter_mut().for_each(|age| *age += done as f32);
         Ok(done)
     }
 
     /// Makes lava as stiff as what most of it does needs: a lone drop in the air is no reason. What is stiffer pushes harder
     /// where it is pressed together already, so that it becomes so by and by.
     fn tune(&mut self, most: &Most) {
-        let (cloud, gap) = (&self.cloud, &self.engine.gap);
+        let (cloud, gap) = (&self.swarm.cloud, &self.engine.gap);
         let n = cloud.len();
         let square = |v: f32| f64::from(v) * f64::from(v);
         let runs: Vec<[f64; 2]> = (0..n.div_ceil(RUN))
@@ -219,7 +165,7 @@ impl Flow {
             cohesion_per_s2: 0.0,
         };
         Setting {
-            domain: self.domain,
+            domain: self.swarm.domain,
             liquid,
             gravity: self.gravity,
             sea: (self.sea, (1.0 - SEA / p.density_kg_per_m3).clamp(0.0, 1.0) as f32),
@@ -233,11 +179,11 @@ impl Flow {
 
     /// How stiff everyone is at its temperature; gives the greatest viscosity that a step has to follow, m²/s.
     fn stiffen(&mut self, sharpness_s: f32) -> f64 {
-        let n = self.cloud.len();
+        let n = self.swarm.len();
         let Stiffness { viscosity, yields } = &mut self.stiffness;
         viscosity.resize(n, 0.0);
         yields.resize(n, 0.0);
-        let (law, sound, heat) = (&self.law, self.sound, &self.heat);
+        let (law, sound, heat) = (&self.law, self.sound, &self.swarm.load);
         let runs = (viscosity.par_chunks_mut(RUN), yields.par_chunks_mut(RUN)).into_par_iter().enumerate();
         // The greatest does not depend on the order.
         runs.map(|(r, (viscosity, yields))| {
@@ -269,25 +215,25 @@ impl Flow {
 
     /// A step in time.
     fn step<K: Kernel>(&mut self, land: &Land, setting: &Setting, dt: f32) -> Most {
-        let n = self.cloud.len();
+        let n = self.swarm.len();
         self.work = [self.work[0] + 1, self.work[1] + n as u64];
         let scheme = self.law.params.integrator;
         let weights = scheme.weights();
         let [first, second] = &mut self.pulls;
-        self.engine.pull::<K>((&self.cloud, &self.lists), &self.stiffness, setting, first);
+        self.engine.pull::<K>((&self.swarm.cloud, &self.swarm.lists), &self.stiffness, setting, first);
         if scheme.looks_twice() {
             let drags = self.engine.drags(setting);
-            half_ahead(&self.cloud, first, drags.then_some(&self.engine.drag[..]), dt, &mut self.half);
+            half_ahead(&self.swarm.cloud, first, drags.then_some(&self.engine.drag[..]), dt, &mut self.half);
             self.engine.stand::<K>(&self.half, &land.mesh, setting);
-            self.engine.pull::<K>((&self.half, &self.lists), &self.stiffness, setting, second);
+            self.engine.pull::<K>((&self.half, &self.swarm.lists), &self.stiffness, setting, second);
         } else {
             second.clear();
         }
         let drags = self.engine.drags(setting);
         let drag = drags.then_some(&self.engine.drag[..]);
-        fresh_speeds(&self.cloud, [first, second], drag, (&weights, dt), &mut self.fresh);
+        fresh_speeds(&self.swarm.cloud, [first, second], drag, (&weights, dt), &mut self.fresh);
         if setting.implicit {
-            self.engine.rub::<K>(&self.lists, setting, dt, &mut self.fresh);
+            self.engine.rub::<K>(&self.swarm.lists, setting, dt, &mut self.fresh);
         }
         let stride = Stride {
             mesh: &land.mesh,
@@ -298,12 +244,12 @@ impl Flow {
             top: if self.law.params.force_time_step { f32::INFINITY } else { self.law.most_speed() as f32 },
             weights,
             dt,
-            from: self.lists.made_for(),
+            from: self.swarm.lists.made_for(),
             half: &self.half,
             off: &self.engine.off,
             fresh: &self.fresh,
         };
-        stride.go(&mut self.cloud)
+        stride.go(&mut self.swarm.cloud)
     }
 
     /// An error where lava has flown apart.
@@ -326,7 +272,7 @@ impl Flow {
         if time_s <= 0.0 || self.law.params.cooling_factor == 0.0 {
             return;
         }
-        self.engine.stand::<K>(&self.cloud, &land.mesh, setting);
+        self.engine.stand::<K>(&self.swarm.cloud, &land.mesh, setting);
         // As many times as conduction asks for; where it would be endless, as often as a block has steps.
         let times = (time_s / self.law.conduction_limit_s()).ceil().clamp(1.0, 64.0);
         let dt = time_s / times;
@@ -338,12 +284,19 @@ impl Flow {
     fn exchange<K: Kernel>(&mut self, dt: f64) {
         let law = &self.law;
         self.degc.clear();
-        self.degc.extend(self.heat.iter().map(|&heat| law.degc(heat)));
+        self.degc.extend(self.swarm.load.iter().map(|&heat| law.degc(heat)));
         let thin = &self.engine.forces.thin;
-        look_around::<K>(&self.cloud, &self.lists, (self.domain, &law.scale), (&self.degc, thin), &mut self.around);
-        let (cloud, engine, around, sea) = (&self.cloud, &self.engine, &self.around, self.sea);
+        look_around::<K>(
+            &self.swarm.cloud,
+            &self.swarm.lists,
+            (self.swarm.domain, &law.scale),
+            (&self.degc, thin),
+            &mut self.around,
+        );
+        let (cloud, engine, around, sea) = (&self.swarm.cloud, &self.engine, &self.around, self.sea);
         let lost: Vec<Lost> = self
-            .heat
+            .swarm
+            .load
             .par_chunks_mut(RUN)
             .enumerate()
             .map(|(r, heat)| {
@@ -377,18 +330,19 @@ impl Flow {
     pub(super) fn frozen(&self, land: &Land) -> Vec<bool> {
         let reach = self.law.spacing as f32;
         let rock = self.law.enthalpy(self.law.params.solidus_degc);
-        (0..self.cloud.len())
+        (0..self.swarm.len())
             .into_par_iter()
             .map(|i| {
-                let grounded = || land.mesh.foot(self.cloud.x[i], self.cloud.y[i]).gap(self.cloud.z[i]) < reach;
-                self.heat[i] < rock && grounded()
+                let grounded =
+                    || land.mesh.foot(self.swarm.cloud.x[i], self.swarm.cloud.y[i]).gap(self.swarm.cloud.z[i]) < reach;
+                self.swarm.load[i] < rock && grounded()
             })
             .collect()
     }
 
     /// Temperature of a particle, °C.
     pub(super) fn temperature(&self, i: usize) -> f64 {
-        self.law.degc(self.heat[i])
+        self.law.degc(self.swarm.load[i])
     }
 
     /// Density over that at rest, as of the last step.

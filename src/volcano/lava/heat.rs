@@ -5,12 +5,11 @@
 //! surroundings' temperature for any step, and slower than it while latent heat is set free.
 
 use super::{choices::Cooling, law::Law};
-use crate::sph::{Around, Kernel};
+use crate::{
+    sph::{Around, Kernel},
+    volcano::heat::radiated_per_k,
+};
 
-/// Stefan's and Boltzmann's constant, W/m²/K⁴.
-const STEFAN: f64 = 5.670_374e-8;
-/// 0 °C in kelvin.
-const ZERO: f64 = 273.15;
 /// Share of a surface, in smoothing lengths, that disorder alone makes inside lava.
 const DISORDER: f32 = 0.15;
 /// Density below which a particle has hardly a neighbour, and down to that of one alone.
@@ -114,8 +113,7 @@ impl Law {
                 lost.air += self.take(&mut left, p.air_w_per_m2_k * bare, dt);
             }
             if p.radiate {
-                let [hot, cold] = [self.degc(left), p.ambient_degc].map(|degc| (degc + ZERO).max(0.0));
-                let per_k = p.emissivity * STEFAN * (hot * hot + cold * cold) * (hot + cold);
+                let [per_k, _] = radiated_per_k(p.emissivity, self.degc(left), p.ambient_degc);
                 lost.sky += self.take(&mut left, per_k * bare, dt);
             }
         }

@@ -103,16 +103,20 @@ impl Land {
         Spread { cells }
     }
 
-    /// Depth of particles that flow, m.
-    pub(super) fn depth_m(&self, at: [&[f32]; 2], volume_m3: f64, reach_m: f64) -> Field<f32> {
+    /// Depth of particles that flow, m, and their mean temperature, °C.
+    pub(super) fn depth_m(&self, at: [&[f32]; 2], degc: &[f64], volume_m3: f64, reach_m: f64) -> [Field<f32>; 2] {
         let each = volume_m3 / self.grid.cell_area_m2();
-        let mut depth = vec![0.0f64; self.grid.cells()];
-        for (&x, &y) in at[0].iter().zip(at[1]) {
+        let [mut depth, mut warm] = [0; 2].map(|_| vec![0.0f64; self.grid.cells()]);
+        for ((&x, &y), degc) in at[0].iter().zip(at[1]).zip(degc) {
             for (cell, share) in self.spread([x, y], reach_m).cells {
                 depth[cell as usize] += each * share;
+                warm[cell as usize] += each * share * degc;
             }
         }
-        Field { grid: self.grid, data: depth.into_iter().map(|depth| depth as f32).collect() }
+        for (warm, depth) in warm.iter_mut().zip(&depth).filter(|(_, depth)| **depth > 0.0) {
+            *warm /= depth;
+        }
+        [depth, warm].map(|values| Field { grid: self.grid, data: values.into_iter().map(|v| v as f32).collect() })
     }
 
     /// Tells the world what has frozen since it was told last, and books it. `hardness` is that of lava.

@@ -7,10 +7,9 @@ use super::{
 use crate::{
     grid::Grid,
     sph::{CubicSpline, DesbrunGascuel, Kernel, Scale, Touch, WendlandC2},
+    volcano::heat::{GRAVITY, Melt, grown},
 };
 
-/// Standard gravity, m/s².
-pub(super) const GRAVITY: f64 = 9.80665;
 /// Density of the sea, kg/m³.
 pub(super) const SEA: f64 = 1025.0;
 /// Spacing over the document's radius: a ball of that radius has the volume of a cube of that side.
@@ -39,7 +38,7 @@ pub(super) struct Law {
     /// Distance of particles at rest, m.
     pub(super) spacing: f64,
     pub(super) scale: Scale,
-    latent: f64,
+    melt: Melt,
 }
 
 /// Time steps, and how viscosity is taken in them.
@@ -57,8 +56,13 @@ impl Law {
             Smoothing::Cubic => scale::<CubicSpline>(params, spacing),
             Smoothing::Desbrun => scale::<DesbrunGascuel>(params, spacing),
         };
-        let latent = if params.cooling == Cooling::Physical { params.latent_heat_j_per_kg } else { 0.0 };
-        Self { params: params.clone(), spacing, scale, latent }
+        let melt = Melt {
+            specific_j_per_kg_k: params.specific_heat_j_per_kg_k,
+            latent_j_per_kg: if params.cooling == Cooling::Physical { params.latent_heat_j_per_kg } else { 0.0 },
+            solidus_degc: params.solidus_degc,
+            liquidus_degc: params.liquidus_degc,
+        };
+        Self { params: params.clone(), spacing, scale, melt }
     }
 
     /// What keeps these parameters from running, and what to change.
@@ -74,15 +78,9 @@ impl Law {
                 4.0 * grid.cell_m
             ));
         }
-        if p.liquidus_degc < p.solidus_degc + 1.0 {
-            return Err("liquidus_degc must be at least a kelvin above solidus_degc".into());
-        }
-        if p.freeze && p.temperature_degc <= p.solidus_degc {
-            return Err(format!(
-                "lava of temperature_degc = {} is rock before it comes out; raise it above solidus_degc = {}, or set \
-                 freeze = false",
-                p.temperature_degc, p.solidus_degc
-            ));
+        self.melt.check()?;
+        if p.freeze {
+            self.melt.check_fresh(p.temperature_degc, ", or set freeze = false")?;
         }
         if p.force_time_step && p.time_step_s <= 0.0 {
             return Err("force_time_step needs a time_step_s".into());
@@ -184,28 +182,18 @@ impl Law {
 
     /// Enthalpy at a temperature, J/kg over 0 °C.
     pub(super) fn enthalpy(&self, degc: f64) -> f64 {
-        let (low, high) = (self.params.solidus_degc, self.params.liquidus_degc);
-        self.params.specific_heat_j_per_kg_k * degc + self.latent * ((degc - low) / (high - low)).clamp(0.0, 1.0)
+        self.melt.enthalpy(degc)
     }
 
     /// Temperature of an enthalpy, °C.
     pub(super) fn degc(&self, enthalpy: f64) -> f64 {
-        let (low, high, c) =
-            (self.params.solidus_degc, self.params.liquidus_degc, self.params.specific_heat_j_per_kg_k);
-        let [rock, melt] = [c * low, c * high + self.latent];
-        if enthalpy <= rock {
-            enthalpy / c
-        } else if enthalpy < melt {
-            low + (high - low) * (enthalpy - rock) / (melt - rock)
-        } else {
-            (enthalpy - self.latent) / c
-        }
+        self.melt.degc(enthalpy)
     }
 
     /// Kinematic viscosity at a temperature, m²/s.
     pub(super) fn viscosity(&self, degc: f64, sound: f64) -> f64 {
         let p = &self.params;
-        let grown = p.viscosity_pa_s * libm::exp((p.viscosity_per_k * (p.temperature_degc - degc)).min(100.0));
+        let grown = p.viscosity_pa_s * grown(p.viscosity_per_k, p.temperature_degc - degc);
         (grown.min(p.most_viscosity_pa_s) / p.density_kg_per_m3).max(self.least_viscosity(sound))
     }
 
@@ -217,7 +205,7 @@ impl Law {
     pub(super) fn yield_m2_per_s2(&self, degc: f64) -> f64 {
         let p = &self.params;
         let cooler = (p.temperature_degc - degc).clamp(0.0, (p.temperature_degc - p.solidus_degc).max(0.0));
-        p.yield_pa * libm::exp((p.yield_per_k * cooler).min(50.0)) / p.density_kg_per_m3
+        p.yield_pa * grown(p.yield_per_k, cooler) / p.density_kg_per_m3
     }
 
     fn most_yield_pa(&self) -> f64 {
@@ -255,16 +243,6 @@ mod tests {
 
     fn law(params: LavaParams) -> Law {
         Law::new(&params, &Grid::new(64, 64, 64.0, Edges::Open))
-    }
-
-    #[test]
-    fn heat_and_temperature_are_each_others_inverse() {
-        let law = law(LavaParams::default());
-        for degc in [-20.0, 20.0, 999.0, 1000.0, 1050.0, 1199.0, 1200.0, 1300.0] {
-            assert!((law.degc(law.enthalpy(degc)) - degc).abs() < 1e-9, "{degc}");
-        }
-        let whole = law.enthalpy(1200.0) - law.enthalpy(1000.0);
-        assert!((whole - 200.0 * 1150.0 - 3.5e5).abs() < 1e-6);
     }
 
     #[test]

@@ -20,7 +20,6 @@ mod law;
 mod params;
 mod process;
 mod saved;
-mod schedule;
 mod stride;
 #[cfg(test)]
 mod tests;
@@ -29,5 +28,4 @@ mod vents;
 pub use choices::{Contact, Cooling, Mass, Smoothing, Solver, Viscosity};
 pub use eruption::{Eruption, Seen};
 pub use heat::Lost;
-pub use params::{LavaParams, VentParams};
-pub use schedule::{Key, Schedule};
+pub use params::LavaParams;

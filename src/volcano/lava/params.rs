@@ -3,11 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{
-    choices::{Contact, Cooling, Mass, Smoothing, Solver, Viscosity},
-    schedule::Key,
+use super::choices::{Contact, Cooling, Mass, Smoothing, Solver, Viscosity};
+use crate::{
+    sph::Scheme,
+    volcano::{outlet::VentParams, schedule::Key},
 };
-use crate::sph::Scheme;
 
 /// An eruption: lava as smoothed particles that push each other, rub, run down, cool, and freeze into the ground.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -177,24 +177,6 @@ pub struct LavaParams {
     /// Hardness of frozen lava.
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1", "x-effect" = "later water carves it slower"))]
     pub hardness: f64,
-}
-
-/// Where lava comes out: a disc, or a fissure from one place to another.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct VentParams {
-    /// The middle, or where a fissure begins, east and south of the map's north-west corner.
-    #[schemars(extend("x-unit" = "km"))]
-    pub at_km: [f64; 2],
-    /// Where a fissure ends.
-    #[schemars(extend("x-unit" = "km"))]
-    pub to_km: Option<[f64; 2]>,
-    /// Radius of the disc, or half of a fissure's width; two spacings if not given.
-    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "m"))]
-    pub radius_m: Option<f64>,
-    /// Part of the lava, beside the other vents' parts; 1 if not given.
-    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "1"))]
-    pub part: Option<f64>,
 }
 
 impl Default for LavaParams {

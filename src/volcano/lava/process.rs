@@ -4,6 +4,7 @@ use super::{eruption::Eruption, law::Law, params::LavaParams};
 use crate::{
     grid::Grid,
     process::{Context, Placement, Process, ProcessError, State, Step},
+    volcano::outlet::check,
     world::{Layer, Matter, Table, World},
 };
 
@@ -58,14 +59,21 @@ fn write(run: &mut Eruption, hardness: f64, world: &mut World, stage: &str) {
     let each = run.particle_m3();
     let [drawn, froze, left] = run.counts().map(|count| count as f64 * each);
     world.ledger.set(stage, Matter::Lava, drawn, froze + left);
-    world.ledger.close(stage, Matter::Lava, run.flow.cloud.len() as f64 * each);
+    world.ledger.close(stage, Matter::Lava, run.flow.swarm.len() as f64 * each);
 }
 
-/// Shows what flows: its depth, and the table of particles where there are any.
-fn show(run: &Eruption, world: &mut World) {
-    let cloud = &run.flow.cloud;
-    let depth = run.land.depth_m([&cloud.x, &cloud.y], run.particle_m3(), 1.2 * run.law.spacing);
+/// Shows how deep and how hot lava flows.
+fn lay(run: &Eruption, world: &mut World) {
+    let seen = run.seen();
+    let [x, y, _] = seen.place_m;
+    let [depth, degc] = run.land.depth_m([x, y], &seen.degc, run.particle_m3(), 1.2 * run.law.spacing);
     world.set_layer(Layer::MoltenLava, depth);
+    world.set_layer(Layer::MoltenTemperature, degc);
+}
+
+/// Shows the particles where there are any.
+fn show(run: &Eruption, world: &mut World) {
+    let cloud = &run.flow.swarm.cloud;
     world.remove_table(TABLE);
     if cloud.is_empty() {
         return;
@@ -99,6 +107,7 @@ impl Process for Lava {
             Layer::Sediment,
             Layer::Hardness,
             Layer::MoltenLava,
+            Layer::MoltenTemperature,
             Layer::LavaTemperature,
             Layer::LavaDate,
         ]
@@ -106,7 +115,8 @@ impl Process for Lava {
 
     fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
         let law = Law::new(&self.params, grid);
-        let all = law.check(grid).and_then(|()| self.params.schedule().map(|_| ()));
+        let vents = || check(&self.params.vent, grid);
+        let all = law.check(grid).and_then(|()| vents()).and_then(|()| self.params.schedule().map(|_| ()));
         all.map_err(ProcessError::Unfit)
     }
 
@@ -148,6 +158,7 @@ impl Process for Lava {
             run.settle();
         }
         write(&mut run, self.params.hardness, world, context.stage);
+        lay(&run, world);
         self.run = Some(run);
         Ok(Step { done: self.done as f64 / self.steps as f64, elapsed_yr: self.span_yr() })
     }

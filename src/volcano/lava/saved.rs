@@ -1,16 +1,11 @@
 //! An eruption as bytes, and back.
 
-use super::{
-    eruption::Eruption,
-    land::Land,
-    law::Law,
-    params::LavaParams,
-    vents::{Source, Vent},
-};
+use super::{eruption::Eruption, land::Land, law::Law, params::LavaParams, vents::Source};
 use crate::{
     grid::{Field, Grid},
     noise::Key,
     process::State,
+    volcano::outlet::Outlet,
 };
 
 /// Names the layout.
@@ -55,7 +50,7 @@ impl Eruption {
         let mut words = vec![
             done,
             MARK,
-            flow.cloud.len() as u64,
+            flow.swarm.len() as u64,
             self.sources.len() as u64,
             risen.len() as u64,
             self.drawn,
@@ -78,10 +73,10 @@ impl Eruption {
         for i in risen {
             words.extend([i as u64, land.raised[i].to_bits(), land.slivers[i].to_bits()]);
         }
-        words.extend(&flow.born);
-        words.extend(flow.heat.iter().map(|heat| heat.to_bits()));
+        words.extend(&flow.swarm.born);
+        words.extend(flow.swarm.load.iter().map(|heat| heat.to_bits()));
         let mut blob: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-        for values in flow.cloud.arrays().into_iter().chain([&flow.age_s]) {
+        for values in flow.swarm.cloud.arrays().into_iter().chain([&flow.swarm.clock_s]) {
             blob.extend(values.iter().flat_map(|value| value.to_le_bytes()));
         }
         let lay = |name: &str, data: &[f32]| (name.to_owned(), Field { grid: *land.mesh.grid(), data: data.to_vec() });
@@ -112,7 +107,7 @@ impl Eruption {
             else {
                 return None;
             };
-            let vent = Vent { from_m: [a, b], to_m: [c, d], radius_m, share };
+            let vent = Outlet { from_m: [a, b], to_m: [c, d], radius_m, share };
             sources.push(Source { owed, ..Source::new(vent, &law) });
         }
         let (mut raised, mut slivers) = (vec![0.0; grid.cells()], vec![0.0; grid.cells()]);
@@ -140,7 +135,7 @@ impl Eruption {
         (flow.sea, flow.sound) = (f32::from_bits(sea as u32), f64::from_bits(sound));
         let lost = [ground, air, sky, in_sea].map(f64::from_bits);
         (flow.lost.ground, flow.lost.air, flow.lost.sky, flow.lost.sea) = (lost[0], lost[1], lost[2], lost[3]);
-        (flow.cloud, flow.heat, flow.age_s, flow.born) = (cloud, heat, age_s, born);
+        (flow.swarm.cloud, flow.swarm.load, flow.swarm.clock_s, flow.swarm.born) = (cloud, heat, age_s, born);
         Some(own)
     }
 }

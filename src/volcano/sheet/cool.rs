@@ -16,7 +16,7 @@ impl Sheet {
                 return 0.0;
             }
             let before = *heat / depth;
-            let (degc, per_k) = law.degc(before);
+            let (degc, per_k) = (law.melt.degc(before), law.melt.per_k(before));
             let wet = ((*sea_m - bed[i]) / depth).clamp(0.0, 1.0);
             let (loss, slope) = law.upwards(degc, wet);
             let mass = law.density * depth;

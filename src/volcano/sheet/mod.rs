@@ -34,4 +34,4 @@ mod stage;
 mod tests;
 
 pub use film::Film;
-pub use params::{LavaSheetParams, SheetKey, SheetVent};
+pub use params::LavaSheetParams;

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::volcano::{outlet::VentParams, schedule::SheetKey};
+
 /// An eruption of kilometres: lava as a sheet on the raster that runs, cools and freezes into the ground.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -15,7 +17,7 @@ pub struct LavaSheetParams {
     pub schedule: Vec<SheetKey>,
     /// Where it comes out; without any the youngest of the table `vents`, or the summit.
     #[schemars(extend("x-effect" = "craters, and fissures with an end"))]
-    pub vent: Vec<SheetVent>,
+    pub vent: Vec<VentParams>,
     /// Density.
     #[schemars(range(min = 100.0, max = 20000.0), extend("x-unit" = "kg/m3", "x-effect" = "thinner, faster flows"))]
     pub density_kg_per_m3: f64,
@@ -76,43 +78,6 @@ pub struct LavaSheetParams {
     /// Hardness of frozen lava.
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1", "x-effect" = "later water carves it slower"))]
     pub hardness: f64,
-}
-
-/// A part of the schedule: a rate from a moment on.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SheetKey {
-    /// When it begins, after the stage does.
-    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "h"))]
-    pub start_h: f64,
-    /// How long it lasts; to the end of the stage if not given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "h"))]
-    pub duration_h: Option<f64>,
-    /// Lava that comes out of all vents together.
-    #[schemars(range(min = 0.0, max = 1e9), extend("x-unit" = "m3/s"))]
-    pub m3_per_s: f64,
-}
-
-/// Where lava comes out: a disc, or a fissure from one place to another.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SheetVent {
-    /// The middle, or where a fissure begins, east and south of the map's north-west corner.
-    #[schemars(extend("x-unit" = "km"))]
-    pub at_km: [f64; 2],
-    /// Where a fissure ends.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(extend("x-unit" = "km"))]
-    pub to_km: Option<[f64; 2]>,
-    /// Radius of the disc, or half of a fissure's width; a cell if not given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "m"))]
-    pub radius_m: Option<f64>,
-    /// Part of the lava, beside the other vents' parts; 1 if not given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "1"))]
-    pub part: Option<f64>,
 }
 
 impl Default for LavaSheetParams {

@@ -1,15 +1,11 @@
 //! The sheet as a stage of a recipe: reads the ground, lets lava run for a share of its time, writes what froze into the
 //! column of rock and what flows into its layer, and books both.
 
-use super::{
-    cells::Sheet,
-    emission::{Emission, HOUR_S},
-    law::Law,
-    params::LavaSheetParams,
-};
+use super::{cells::Sheet, emission::sources, law::Law, params::LavaSheetParams};
 use crate::{
     grid::{Field, Grid},
     process::{Context, Placement, Process, ProcessError, State, Step},
+    volcano::schedule::{HOUR_S, Schedule},
     world::{Layer, Matter, World},
 };
 
@@ -58,9 +54,9 @@ impl LavaSheetParams {
 impl Stage {
     fn begin(&self, world: &mut World, context: &Context) -> Result<Run, ProcessError> {
         let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
-        let emission = Emission::new(&self.params, world, mask.as_ref()).map_err(ProcessError::Unfit)?;
+        let sources = sources(&self.params, world, mask.as_ref()).map_err(ProcessError::Unfit)?;
         world.ledger.open(context.stage, Matter::Lava, 0.0);
-        Ok(Run { sources: emission.cells, melt: Vec::new(), rest: Field::filled(world.grid, 0.0) })
+        Ok(Run { sources, melt: Vec::new(), rest: Field::filled(world.grid, 0.0) })
     }
 
     /// The seconds between which a step runs.
@@ -82,12 +78,12 @@ impl Stage {
         let molten = run.melt.iter().map(|melt| (sheet.cell(&grid, melt.cell as usize), melt.depth, melt.heat));
         let all: Vec<(usize, f64, f64)> = molten.chain(fed).collect();
         sheet.put(&all);
-        let emission = Emission::of(&self.params);
+        let schedule = Schedule::of_sheet(&self.params.schedule).map_err(ProcessError::Unfit)?;
         let [mut now, end] = self.span_s();
         while now < end {
             context.check()?;
-            let change = emission.next_change_s(now).min(end);
-            let rise = emission.rate_m3_s(now) / grid.cell_area_m2();
+            let change = schedule.next_change(now).map_or(end, |change| change.min(end));
+            let rise = schedule.rate_m3_per_s(now) / grid.cell_area_m2();
             let source: Vec<(usize, f64)> =
                 run.sources.iter().map(|&(i, share)| (sheet.cell(&grid, i), rise * share)).collect();
             let left = change - now;
@@ -104,7 +100,7 @@ impl Stage {
         let over = self.done + 1 >= self.steps;
         let grid = world.grid;
         let area = grid.cell_area_m2();
-        let mut depth = Field::filled(grid, 0.0f32);
+        let [mut depth, mut warm] = [0; 2].map(|_| Field::filled(grid, 0.0f32));
         let mut melt = Vec::new();
         let mut settled = 0.0;
         let mut cells = Vec::new();
@@ -113,12 +109,13 @@ impl Stage {
             let mut fresh = Fresh { cell: i, frozen: sheet.frozen[k], degc: self.params.solidus_degc };
             if molten > 0.0 && over {
                 let whole = fresh.frozen + molten;
-                fresh.degc = (fresh.degc * fresh.frozen + law.degc(heat / molten).0 * molten) / whole;
+                fresh.degc = (fresh.degc * fresh.frozen + law.melt.degc(heat / molten) * molten) / whole;
                 fresh.frozen = whole;
                 settled += molten;
             } else if molten > 0.0 {
                 melt.push(Melt { cell: i as u32, depth: molten, heat });
                 depth.data[i] = molten as f32;
+                warm.data[i] = law.melt.degc(heat / molten) as f32;
             }
             if molten > 0.0 || fresh.frozen > 0.0 {
                 cells.push(fresh);
@@ -128,6 +125,7 @@ impl Stage {
         let date = (world.time_yr + self.elapsed_yr()) as f32;
         run.lay(world, &cells, frozen_m3, (date, self.params.hardness as f32), context.stage);
         world.set_layer(Layer::MoltenLava, depth);
+        world.set_layer(Layer::MoltenTemperature, warm);
         world.ledger.book_in(context.stage, Matter::Lava, sheet.books.erupted * area);
         world.ledger.book_out(context.stage, Matter::Lava, sheet.books.left * area + frozen_m3);
         let flows_m3 = melt.iter().map(|melt| melt.depth).sum::<f64>() * area;
@@ -242,6 +240,7 @@ impl Process for Stage {
             Layer::Sediment,
             Layer::Hardness,
             Layer::MoltenLava,
+            Layer::MoltenTemperature,
             Layer::LavaTemperature,
             Layer::LavaDate,
         ]
@@ -249,11 +248,7 @@ impl Process for Stage {
 
     fn fit(&self, grid: &Grid) -> Result<(), ProcessError> {
         let params = &self.params;
-        params
-            .check()
-            .and_then(|()| params.check_work(grid))
-            .and_then(|()| params.check_vents(grid))
-            .map_err(ProcessError::Unfit)
+        params.check().and_then(|()| params.check_work(grid)).map_err(ProcessError::Unfit)
     }
 
     fn remarks(&self, grid: &Grid) -> Vec<String> {

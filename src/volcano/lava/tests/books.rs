@@ -17,7 +17,7 @@ fn small() -> LavaParams {
         spacing_m: 0.6,
         cooling_factor: 2000.0,
         schedule: vec![Timed::particles(0.0, 1.0, 600.0), Timed::particles(1.0, 2.0, 150.0)],
-        vent: vec![super::super::VentParams { at_km: [0.024, 0.024], to_km: None, radius_m: Some(2.0), part: None }],
+        vent: vec![VentParams { at_km: [0.024, 0.024], to_km: None, radius_m: Some(2.0), part: None }],
         ..LavaParams::default()
     }
 }
@@ -37,14 +37,14 @@ fn what_comes_out_is_the_schedules_and_none_is_lost() {
         let due = own.schedule.particles(0.0, to, own.particle_m3());
         assert!((own.drawn as f64 + own.owed() - due).abs() < 1e-6 && own.owed() < 25.0, "{to}: {due}");
         let [drawn, froze, left] = own.counts();
-        assert_eq!(drawn, froze + left + own.flow.cloud.len() as u64);
+        assert_eq!(drawn, froze + left + own.flow.swarm.len() as u64);
         assert!((risen(&own) / (froze as f64 * own.particle_m3()).max(1e-9) - 1.0).abs() < 1e-9 || froze == 0);
     }
     assert_eq!(own.drawn, 900);
     assert!(own.owed() < 1.0 && own.froze > 0, "{:?}", own.counts());
     own.settle();
     let [drawn, froze, left] = own.counts();
-    assert_eq!((drawn, own.flow.cloud.len()), (froze + left, 0));
+    assert_eq!((drawn, own.flow.swarm.len()), (froze + left, 0));
 }
 
 #[test]
@@ -53,7 +53,7 @@ fn nobody_comes_out_too_near_another() {
     own.sources[0].owed = 1e5;
     own.flow.sort();
     own.emit();
-    let (cloud, least) = (&own.flow.cloud, 0.95 * 0.6 - 1e-4);
+    let (cloud, least) = (&own.flow.swarm.cloud, 0.95 * 0.6 - 1e-4);
     assert!(cloud.len() > 1000);
     for i in 0..cloud.len() {
         for j in 0..i {
@@ -64,7 +64,7 @@ fn nobody_comes_out_too_near_another() {
     // And nothing more finds room.
     let there = cloud.len();
     own.emit();
-    assert_eq!(own.flow.cloud.len(), there);
+    assert_eq!(own.flow.swarm.len(), there);
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn fissures_and_tables_of_vents_are_used() {
     own.sources[0].owed = 200.0;
     own.flow.sort();
     own.emit();
-    let (low, high) = own.flow.cloud.x.iter().fold((99.0f32, 0.0f32), |(a, b), &x| (a.min(x), b.max(x)));
+    let (low, high) = own.flow.swarm.cloud.x.iter().fold((99.0f32, 0.0f32), |(a, b), &x| (a.min(x), b.max(x)));
     assert!(low < 26.0 && high > 38.0, "{low} {high}");
     let mut world = cone();
     let table = Table::new("vents")
@@ -221,7 +221,7 @@ fn an_eruption_on_nothing_but_a_schedule_is_deterministic_in_its_schedule() {
     let own = Schedule::new(&[Timed::particles(0.0, 1.0, 10.0)]).unwrap();
     let world = cone();
     let law = Law::new(&small(), &world.grid);
-    let vent = Vent { from_m: [24.0, 24.0], to_m: [24.0, 24.0], radius_m: 0.0, share: 1.0 };
+    let vent = Outlet::disc([24.0, 24.0], 0.0);
     let mut point = Eruption::at(law, own, (Land::new(&world), -1e4), vec![vent], Key::new(2));
     point.run(0.0, 2.0).unwrap();
     assert_eq!(point.counts()[0], 10);

@@ -17,7 +17,7 @@ fn sheet(params: LavaParams, angle_deg: f64, layers: usize) -> (Flow, Land) {
 
 /// Mean speed of all and of the uppermost layer down the slope, m/s, with the thickness that the sheet then has.
 fn speeds(flow: &Flow) -> (f64, f64, f64) {
-    let (cloud, d) = (&flow.cloud, flow.law.spacing);
+    let (cloud, d) = (&flow.swarm.cloud, flow.law.spacing);
     let area = 64.0;
     let thick = cloud.len() as f64 * flow.law.volume_m3() / area;
     let mean = cloud.vx.iter().map(|&v| f64::from(v)).sum::<f64>() / cloud.len() as f64;
@@ -97,8 +97,8 @@ fn carried(smoothing: f64) -> (f64, f64) {
     for _ in 0..48 {
         flow_for(&mut flow, &land, 0.05);
         let sound2 = flow.sound * flow.sound;
-        let mut order: Vec<usize> = (0..flow.cloud.len()).collect();
-        order.sort_by(|&a, &b| flow.cloud.z[b].total_cmp(&flow.cloud.z[a]));
+        let mut order: Vec<usize> = (0..flow.swarm.len()).collect();
+        order.sort_by(|&a, &b| flow.swarm.cloud.z[b].total_cmp(&flow.swarm.cloud.z[a]));
         for (higher, &i) in order.iter().enumerate() {
             // What weighs on it: all that is higher, over the area.
             let depth = (higher as f64 + 0.5) * flow.law.volume_m3() / 64.0;
@@ -107,7 +107,7 @@ fn carried(smoothing: f64) -> (f64, f64) {
                 sums[1] += depth * depth;
             }
         }
-        top += (f64::from(flow.cloud.z[order[0]]) + 0.25) / 48.0;
+        top += (f64::from(flow.swarm.cloud.z[order[0]]) + 0.25) / 48.0;
     }
     (sums[0] / sums[1] / G, top)
 }
@@ -131,13 +131,13 @@ fn a_heap_spreads_as_huppert_says() {
         LavaParams { spacing_m: d, viscosity_pa_s, most_viscosity_pa_s: viscosity_pa_s, ..LavaParams::default() };
     let (mut flow, land) = cold(&params, &world(grid, |_, _| 0.0));
     fill(&mut flow, [30.0 - 10.0 * d, 30.0 - 10.0 * d, 0.0], [20, 20, 10], 0.05);
-    let volume = flow.cloud.len() as f64 * flow.law.volume_m3();
+    let volume = flow.swarm.len() as f64 * flow.law.volume_m3();
     let spread = |flow: &Flow| {
         let r2 = |i: usize| {
-            let (x, y) = (f64::from(flow.cloud.x[i]) - 30.0, f64::from(flow.cloud.y[i]) - 30.0);
+            let (x, y) = (f64::from(flow.swarm.cloud.x[i]) - 30.0, f64::from(flow.swarm.cloud.y[i]) - 30.0);
             x * x + y * y
         };
-        let mean = (0..flow.cloud.len()).map(r2).sum::<f64>() / flow.cloud.len() as f64;
+        let mean = (0..flow.swarm.len()).map(r2).sum::<f64>() / flow.swarm.len() as f64;
         // The profile (1 − r²/R²)^(1/3) has a mean square radius of 3/7 R².
         (7.0 / 3.0 * mean).sqrt()
     };
@@ -167,15 +167,16 @@ fn momentum_is_kept_where_temperatures_differ() {
         let (mut flow, land) = cold(&params, &world(grid, |_, _| 0.0));
         fill(&mut flow, [15.0, 15.0, 5.0], [9, 9, 9], 0.3);
         let mut stream = Key::new(9).stream();
-        for i in 0..flow.cloud.len() {
-            flow.heat[i] = flow.law.enthalpy(stream.between(1000.0, 1150.0));
-            flow.cloud.vx[i] = stream.between(-1.0, 1.5) as f32;
-            flow.cloud.vz[i] = stream.between(-1.0, 1.0) as f32;
+        for i in 0..flow.swarm.len() {
+            flow.swarm.load[i] = flow.law.enthalpy(stream.between(1000.0, 1150.0));
+            flow.swarm.cloud.vx[i] = stream.between(-1.0, 1.5) as f32;
+            flow.swarm.cloud.vz[i] = stream.between(-1.0, 1.0) as f32;
         }
         let sum = |flow: &Flow| {
-            [&flow.cloud.vx, &flow.cloud.vy, &flow.cloud.vz].map(|v| v.iter().map(|&v| f64::from(v)).sum::<f64>())
+            [&flow.swarm.cloud.vx, &flow.swarm.cloud.vy, &flow.swarm.cloud.vz]
+                .map(|v| v.iter().map(|&v| f64::from(v)).sum::<f64>())
         };
-        let size: f64 = flow.cloud.vx.iter().map(|&v| f64::from(v.abs())).sum();
+        let size: f64 = flow.swarm.cloud.vx.iter().map(|&v| f64::from(v.abs())).sum();
         let before = sum(&flow);
         flow_for(&mut flow, &land, 0.5);
         let after = sum(&flow);
@@ -203,17 +204,17 @@ fn pressure_alone_keeps_a_plane_a_plane() {
     };
     let (mut flow, land) = cold(&params, &world(grid, |_, _| 0.0));
     fill(&mut flow, [17.0, 17.0, 5.0], [12, 12, 1], 0.0);
-    let spread = |flow: &Flow| flow.cloud.x.iter().fold(0.0f32, |a, &x| a.max((x - 20.0).abs()));
+    let spread = |flow: &Flow| flow.swarm.cloud.x.iter().fold(0.0f32, |a, &x| a.max((x - 20.0).abs()));
     let before = spread(&flow);
     flow_for(&mut flow, &land, 1.0);
-    assert!(flow.cloud.z.iter().all(|&z| z == 5.25) && spread(&flow) > 1.2 * before, "{}", spread(&flow));
+    assert!(flow.swarm.cloud.z.iter().all(|&z| z == 5.25) && spread(&flow) > 1.2 * before, "{}", spread(&flow));
     // And with viscosity it moves in blocks: neighbours go alike.
     let mut rubbing = params.clone();
     (rubbing.viscosity, rubbing.temperature_degc) = (Viscosity::Document, 1200.0);
     let (mut slow, land) = cold(&rubbing, &world(grid, |_, _| 0.0));
     fill(&mut slow, [17.0, 17.0, 5.0], [12, 12, 1], 0.0);
     flow_for(&mut slow, &land, 1.0);
-    assert!(slow.cloud.z.iter().all(|&z| z == 5.25) && spread(&slow) < spread(&flow));
+    assert!(slow.swarm.cloud.z.iter().all(|&z| z == 5.25) && spread(&slow) < spread(&flow));
 }
 
 #[test]
@@ -225,10 +226,10 @@ fn lava_stays_on_the_ground_or_falls_through_none() {
         let (mut flow, land) = cold(&params, &world(grid, ground));
         fill(&mut flow, [20.0, 12.0, 8.0], [6, 6, 6], 0.1);
         flow_for(&mut flow, &land, 3.0);
-        let least = (0..flow.cloud.len())
-            .map(|i| land.mesh.foot(flow.cloud.x[i], flow.cloud.y[i]).gap(flow.cloud.z[i]))
+        let least = (0..flow.swarm.len())
+            .map(|i| land.mesh.foot(flow.swarm.cloud.x[i], flow.swarm.cloud.y[i]).gap(flow.swarm.cloud.z[i]))
             .fold(f32::INFINITY, f32::min);
-        let middle = flow.cloud.x.iter().sum::<f32>() / flow.cloud.len() as f32;
+        let middle = flow.swarm.cloud.x.iter().sum::<f32>() / flow.swarm.len() as f32;
         assert!(least > -1e-3 && (contact != Contact::Stick || least > 0.2), "{contact:?}: {least}");
         assert!(middle < 21.5, "{contact:?}: {middle}");
     }
@@ -243,7 +244,7 @@ fn lava_stays_on_the_ground_or_falls_through_none() {
     fill(&mut flow, [20.0, 12.0, 8.0], [2, 2, 2], 0.0);
     flow_for(&mut flow, &land, 2.0);
     // ½·g·t² = 19.6 m.
-    assert!((f64::from(flow.cloud.z[0]) - (8.25 - 0.5 * G * 4.0)).abs() < 0.2, "{}", flow.cloud.z[0]);
+    assert!((f64::from(flow.swarm.cloud.z[0]) - (8.25 - 0.5 * G * 4.0)).abs() < 0.2, "{}", flow.swarm.cloud.z[0]);
 }
 
 #[test]
@@ -254,9 +255,9 @@ fn hot_lava_runs_further_than_cold() {
         let (mut flow, land) = cold(&params, &world(grid, |x, _| 0.2 * (40.0 - x)));
         fill(&mut flow, [6.0, 7.0, 7.0], [8, 8, 4], 0.1);
         let heat = flow.law.enthalpy(degc);
-        flow.heat.fill(heat);
+        flow.swarm.load.fill(heat);
         flow_for(&mut flow, &land, 6.0);
-        flow.cloud.x.iter().sum::<f32>() / flow.cloud.len() as f32
+        flow.swarm.cloud.x.iter().sum::<f32>() / flow.swarm.len() as f32
     };
     let (hot, cold) = (far(1150.0), far(1020.0));
     assert!(hot > cold + 1.0, "{hot} {cold}");
@@ -278,8 +279,8 @@ fn threads_give_the_same_bits() {
             let mut own =
                 eruption(&params, &world(grid, |x, y| 8.0 - 0.02 * ((x - 15.0).powi(2) + (y - 15.0).powi(2))));
             own.run(0.0, 2.0).unwrap();
-            let heat: Vec<u64> = own.flow.heat.iter().map(|v| v.to_bits()).collect();
-            let rest: Vec<u32> = own.flow.cloud.arrays().into_iter().flatten().map(|v| v.to_bits()).collect();
+            let heat: Vec<u64> = own.flow.swarm.load.iter().map(|v| v.to_bits()).collect();
+            let rest: Vec<u32> = own.flow.swarm.cloud.arrays().into_iter().flatten().map(|v| v.to_bits()).collect();
             (heat, rest, own.counts())
         })
     };

@@ -36,17 +36,17 @@ fn heat_between_two_blocks_spreads_as_an_error_function_and_none_is_lost() {
         };
         let (mut flow, land) = block(params, [40, 7, 7]);
         let degc = |x: f32| if x < 30.0 { 1100.0 } else { 700.0 };
-        for i in 0..flow.heat.len() {
-            flow.heat[i] = flow.law.enthalpy(degc(flow.cloud.x[i]));
+        for i in 0..flow.swarm.load.len() {
+            flow.swarm.load[i] = flow.law.enthalpy(degc(flow.swarm.cloud.x[i]));
         }
-        let whole = |flow: &Flow| flow.heat.iter().sum::<f64>();
+        let whole = |flow: &Flow| flow.swarm.load.iter().sum::<f64>();
         let before = whole(&flow);
         let time = 800.0;
         flow_for(&mut flow, &land, time);
         assert!((whole(&flow) / before - 1.0).abs() < 1e-10);
         let (mut off, mut size) = (0.0, 0.0);
-        for i in 0..flow.heat.len() {
-            let (x, y, z) = (flow.cloud.x[i], flow.cloud.y[i], flow.cloud.z[i]);
+        for i in 0..flow.swarm.load.len() {
+            let (x, y, z) = (flow.swarm.cloud.x[i], flow.swarm.cloud.y[i], flow.swarm.cloud.z[i]);
             if (y - 23.5).abs() < 0.1 && (z - 13.5).abs() < 0.1 {
                 let want = 900.0 - 200.0 * libm::erf((f64::from(x) - 30.0) / (2.0 * (1e-2 * time).sqrt()));
                 off += (flow.temperature(i) - want).powi(2);
@@ -148,10 +148,10 @@ fn every_path_of_heat_can_be_switched_off() {
         let mut flow = Flow::new(Law::new(&params, &grid), grid);
         let land = Land::new(&world(grid, |_, _| 0.0));
         fill(&mut flow, [4.0, 4.0, 0.0], [6, 6, 6], 0.05);
-        flow.heat[100] = flow.law.enthalpy(1050.0);
+        flow.swarm.load[100] = flow.law.enthalpy(1050.0);
         flow_for(&mut flow, &land, 0.2);
         let Lost { ground, air, sky, sea } = flow.lost;
-        let still = flow.heat.iter().filter(|&&heat| heat == flow.law.enthalpy(1150.0)).count();
+        let still = flow.swarm.load.iter().filter(|&&heat| heat == flow.law.enthalpy(1150.0)).count();
         ([ground, air, sky, sea].map(|lost| lost > 0.0), still)
     };
     assert_eq!(on(&|_| ()), ([false; 4], 215));

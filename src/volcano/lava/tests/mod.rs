@@ -3,6 +3,7 @@
 mod books;
 mod flows;
 mod heat;
+mod steps;
 
 use super::{
     LavaParams,
@@ -11,12 +12,14 @@ use super::{
     flow::Flow,
     land::Land,
     law::Law,
-    schedule::{Key as Timed, Schedule},
-    vents::Vent,
 };
 use crate::{
     grid::{Edges, Field, Grid},
     noise::Key,
+    volcano::{
+        outlet::{Outlet, VentParams},
+        schedule::{Key as Timed, Schedule},
+    },
     world::{Layer, World},
 };
 

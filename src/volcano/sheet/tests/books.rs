@@ -6,7 +6,7 @@ use super::*;
 use crate::{
     grid::Field,
     process::{Context, Placement, ProcessError},
-    volcano::{SheetKey, SheetVent},
+    volcano::{SheetKey, VentParams},
     world::{Layer, Matter, World},
 };
 
@@ -30,7 +30,7 @@ fn eruption() -> LavaSheetParams {
             SheetKey { start_h: 3.0, duration_h: Some(2.0), m3_per_s: 60.0 },
             SheetKey { start_h: 0.0, duration_h: Some(4.0), m3_per_s: 40.0 },
         ],
-        vent: vec![SheetVent { at_km: [0.6, 1.2], to_km: None, radius_m: Some(60.0), part: None }],
+        vent: vec![VentParams { at_km: [0.6, 1.2], to_km: None, radius_m: Some(60.0), part: None }],
         ..LavaSheetParams::default()
     }
 }
@@ -88,7 +88,7 @@ fn any_number_of_threads_gives_the_same_bits() {
             let mut world = World::new(grid, 0.0);
             let height = |x: usize, y: usize| 300.0 - 2.0 * x as f32 + 6.0 * (y as f32 * 0.3).sin();
             world.set_layer(Layer::Bedrock, Field::from_fn(grid, height));
-            let wide = SheetVent { at_km: [0.6, 0.3], to_km: Some([0.6, 2.0]), radius_m: Some(100.0), part: None };
+            let wide = VentParams { at_km: [0.6, 0.3], to_km: Some([0.6, 2.0]), radius_m: Some(100.0), part: None };
             erupt(LavaSheetParams { vent: vec![wide], ..eruption() }, world).unwrap()
         })
     };
@@ -102,7 +102,7 @@ fn lava_builds_land_out_of_the_sea() {
     let land = |world: &World| world.height().data.iter().filter(|&&z| z > 0.0).count();
     let dry = land(&before);
     let params = LavaSheetParams {
-        vent: vec![SheetVent { at_km: [2.3, 1.2], to_km: None, radius_m: Some(60.0), part: None }],
+        vent: vec![VentParams { at_km: [2.3, 1.2], to_km: None, radius_m: Some(60.0), part: None }],
         ..eruption()
     };
     let world = erupt(params, before).unwrap();
@@ -120,9 +120,9 @@ fn what_cannot_be_is_refused_in_a_line_and_what_is_odd_is_survived() {
     assert!(refused(LavaSheetParams { temperature_degc: 900.0, ..base() }).contains("solidus"));
     assert!(refused(LavaSheetParams { liquidus_degc: 1000.0, ..base() }).contains("liquidus"));
     assert!(refused(LavaSheetParams { ambient_degc: 1010.0, ..base() }).contains("ambient"));
-    let off = SheetVent { at_km: [9.0, 1.0], to_km: None, radius_m: None, part: None };
+    let off = VentParams { at_km: [9.0, 1.0], to_km: None, radius_m: None, part: None };
     assert!(refused(LavaSheetParams { vent: vec![off], ..base() }).contains("vent 1"));
-    let none = SheetVent { part: Some(0.0), at_km: [0.6, 1.2], to_km: None, radius_m: None };
+    let none = VentParams { part: Some(0.0), at_km: [0.6, 1.2], to_km: None, radius_m: None };
     assert!(refused(LavaSheetParams { vent: vec![none], ..base() }).contains("part"));
     let negative = vec![SheetKey { start_h: 0.0, duration_h: Some(-1.0), m3_per_s: 1.0 }];
     assert!(refused(LavaSheetParams { schedule: negative, ..base() }).contains("at least 0"));

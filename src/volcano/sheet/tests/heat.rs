@@ -13,7 +13,7 @@ fn still(params: LavaSheetParams, depth: f64) -> (Sheet, Law, Grid) {
 
 fn degc(sheet: &Sheet, law: &Law, grid: &Grid) -> f64 {
     let i = sheet.cell(grid, 5);
-    law.degc(sheet.heat[i] / sheet.molten[i]).0
+    law.melt.degc(sheet.heat[i] / sheet.molten[i])
 }
 
 /// Steps of a length.
@@ -115,7 +115,7 @@ fn heat_moves_with_lava_and_none_is_lost_without_losses() {
     let mut sheet = on(&grid, |x, y| 10.0 * (x * std::f64::consts::TAU / 480.0).sin() + 8.0 * (y * 0.0262).cos());
     pool(&mut sheet, &grid, &law, |x, y| if (x - 240.0).hypot(y - 240.0) < 100.0 { 8.0 } else { 0.0 });
     // One half cooler than the other.
-    let (cold, hot) = (law.enthalpy(1050.0), law.fresh);
+    let (cold, hot) = (law.melt.enthalpy(1050.0), law.fresh);
     for i in 0..sheet.heat.len() / 2 {
         sheet.heat[i] = sheet.molten[i] * cold;
     }

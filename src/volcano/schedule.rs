@@ -3,6 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Seconds of an hour.
+pub(super) const HOUR_S: f64 = 3600.0;
+
 /// A part of the schedule: a rate from a moment on, in particles or in volume.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -34,39 +37,83 @@ impl Key {
     pub fn volume(start_time: f64, duration: f64, rate: f64) -> Self {
         Self { start_time, duration: Some(duration), particles_per_second: None, m3_per_s: Some(rate) }
     }
+}
 
-    /// What is wrong with it, and how to mend it.
-    fn check(&self) -> Result<(), String> {
-        let numbers = [Some(self.start_time), self.duration, self.particles_per_second, self.m3_per_s];
-        if numbers.iter().flatten().any(|n| !n.is_finite() || *n < 0.0) {
-            return Err("start_time, duration and rate must be numbers of at least 0".into());
-        }
-        match (self.particles_per_second, self.m3_per_s) {
-            (Some(_), None) | (None, Some(_)) => Ok(()),
-            (None, None) => Err("it needs a rate: particles_per_second or m3_per_s".into()),
-            (Some(_), Some(_)) => Err("it has two rates; give particles_per_second or m3_per_s".into()),
-        }
-    }
+/// A part of the schedule: a rate from a moment on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SheetKey {
+    /// When it begins, after the stage does.
+    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "h"))]
+    pub start_h: f64,
+    /// How long it lasts; to the end of the stage if not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "h"))]
+    pub duration_h: Option<f64>,
+    /// Lava that comes out of all vents together.
+    #[schemars(range(min = 0.0, max = 1e9), extend("x-unit" = "m3/s"))]
+    pub m3_per_s: f64,
+}
 
-    /// Where it ends, s.
-    fn end(&self) -> f64 {
-        self.start_time + self.duration.unwrap_or(f64::INFINITY)
-    }
+/// A rate and when it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Span {
+    from_s: f64,
+    to_s: f64,
+    particles_per_s: f64,
+    m3_per_s: f64,
 }
 
 /// The whole schedule. Keys may stand in any order, and where several hold their rates add up.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Schedule {
-    keys: Vec<Key>,
+    spans: Vec<Span>,
+}
+
+impl Key {
+    fn span(&self) -> Result<Span, String> {
+        let numbers = [Some(self.start_time), self.duration, self.particles_per_second, self.m3_per_s];
+        if numbers.iter().flatten().any(|n| !n.is_finite() || *n < 0.0) {
+            return Err("start_time, duration and rate must be numbers of at least 0".into());
+        }
+        let (particles_per_s, m3_per_s) = match (self.particles_per_second, self.m3_per_s) {
+            (Some(particles), None) => (particles, 0.0),
+            (None, Some(volume)) => (0.0, volume),
+            (None, None) => return Err("it needs a rate: particles_per_second or m3_per_s".into()),
+            (Some(_), Some(_)) => return Err("it has two rates; give particles_per_second or m3_per_s".into()),
+        };
+        let to_s = self.start_time + self.duration.unwrap_or(f64::INFINITY);
+        Ok(Span { from_s: self.start_time, to_s, particles_per_s, m3_per_s })
+    }
+}
+
+impl SheetKey {
+    fn span(&self) -> Result<Span, String> {
+        let numbers = [Some(self.start_h), self.duration_h, Some(self.m3_per_s)];
+        if numbers.iter().flatten().any(|n| !n.is_finite() || *n < 0.0) {
+            return Err("start_h, duration_h and m3_per_s must be numbers of at least 0".into());
+        }
+        let to_s = (self.start_h + self.duration_h.unwrap_or(f64::INFINITY)) * HOUR_S;
+        Ok(Span { from_s: self.start_h * HOUR_S, to_s, particles_per_s: 0.0, m3_per_s: self.m3_per_s })
+    }
 }
 
 impl Schedule {
     /// Checks keys; an error names the one that is wrong, counted from 1.
     pub fn new(keys: &[Key]) -> Result<Self, String> {
-        for (i, key) in keys.iter().enumerate() {
-            key.check().map_err(|what| format!("key {} of the schedule: {what}", i + 1))?;
-        }
-        Ok(Self { keys: keys.to_vec() })
+        Self::of(keys.iter().map(Key::span))
+    }
+
+    /// The same for the keys of a sheet.
+    pub fn of_sheet(keys: &[SheetKey]) -> Result<Self, String> {
+        Self::of(keys.iter().map(SheetKey::span))
+    }
+
+    fn of(spans: impl Iterator<Item = Result<Span, String>>) -> Result<Self, String> {
+        let named = |(i, span): (usize, Result<Span, String>)| {
+            span.map_err(|what| format!("key {} of the schedule: {what}", i + 1))
+        };
+        Ok(Self { spans: spans.enumerate().map(named).collect::<Result<_, _>>()? })
     }
 
     /// From the text of a JSON file: a list of keys.
@@ -78,17 +125,28 @@ impl Schedule {
 
     /// Particles that come out between two moments, each of `volume_m3`.
     pub fn particles(&self, from_s: f64, to_s: f64, volume_m3: f64) -> f64 {
-        let of = |key: &Key| {
-            let span = key.end().min(to_s) - key.start_time.max(from_s);
-            let rate = key.particles_per_second.unwrap_or(0.0) + key.m3_per_s.unwrap_or(0.0) / volume_m3;
-            if span > 0.0 { rate * span } else { 0.0 }
+        let of = |span: &Span| {
+            let long_s = span.to_s.min(to_s) - span.from_s.max(from_s);
+            let rate = span.particles_per_s + span.m3_per_s / volume_m3;
+            if long_s > 0.0 { rate * long_s } else { 0.0 }
         };
-        self.keys.iter().map(of).sum()
+        self.spans.iter().map(of).sum()
+    }
+
+    /// Volume that comes out in a second at a moment, m³/s, of what is not counted in particles.
+    pub fn rate_m3_per_s(&self, at_s: f64) -> f64 {
+        let holds = |span: &&Span| span.from_s <= at_s && at_s < span.to_s;
+        self.spans.iter().filter(holds).map(|span| span.m3_per_s).sum()
+    }
+
+    /// Spans until a moment as their lengths and rates, s and m³/s.
+    pub(super) fn until(&self, end_s: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.spans.iter().map(move |span| ((span.to_s.min(end_s) - span.from_s).max(0.0), span.m3_per_s))
     }
 
     /// The next moment after `now_s` at which a rate begins or ends; `None` if that never happens.
     pub fn next_change(&self, now_s: f64) -> Option<f64> {
-        let ends = self.keys.iter().flat_map(|key| [key.start_time, key.end()]);
+        let ends = self.spans.iter().flat_map(|span| [span.from_s, span.to_s]);
         ends.filter(|&at| at > now_s && at.is_finite()).reduce(f64::min)
     }
 }
@@ -120,6 +178,16 @@ mod tests {
             Schedule::new(&[endless, Key::particles(4.0, 4.0, 10.0), Key::particles(0.0, 5.0, 1.0)]).unwrap();
         // 4 to 5: two keys; 5 to 8: two; 8 to 10: one. Half a cubic metre each.
         assert_eq!(schedule.particles(4.0, 10.0, 0.5), 1.0 + 40.0 + 20.0);
+    }
+
+    #[test]
+    fn a_sheets_keys_are_the_same_in_hours() {
+        let key = |start_h, duration_h, m3_per_s| SheetKey { start_h, duration_h, m3_per_s };
+        let schedule = Schedule::of_sheet(&[key(1.0, Some(2.0), 5.0), key(2.0, None, 7.0)]).unwrap();
+        assert_eq!([0.5, 1.0, 2.5, 3.0].map(|h| schedule.rate_m3_per_s(h * HOUR_S)), [0.0, 5.0, 12.0, 7.0]);
+        assert_eq!(schedule.next_change(HOUR_S), Some(2.0 * HOUR_S));
+        assert_eq!(schedule.until(4.0 * HOUR_S).collect::<Vec<_>>(), [(2.0 * HOUR_S, 5.0), (2.0 * HOUR_S, 7.0)]);
+        assert!(Schedule::of_sheet(&[key(0.0, Some(-1.0), 1.0)]).unwrap_err().contains("key 1"));
     }
 
     #[test]
