@@ -23,9 +23,9 @@ pub(crate) fn run(grow: Grow, cancel: &AtomicBool, output: &mut Output) -> Resul
     let pool = builder.build().map_err(|e| CliError::System(format!("cannot start the threads: {e}")))?;
     let voice = grow.voice;
     match grow.aim {
-        Aim::Folder(Folder { out, existing, checkpoint_every, until, film, frames, keep }) => {
+        Aim::Folder(Folder { out, existing, checkpoint_every, until, film, frames, bake_per_s, keep }) => {
             let plan = Plan::new(&grow.source, &grow.overrides)?;
-            let request = Request { plan, out, existing, checkpoint_every, until, film, frames, keep };
+            let request = Request { plan, out, existing, checkpoint_every, until, film, frames, bake_per_s, keep };
             let mut grown = pool.install(|| folder(&request, voice, cancel))?;
             let failures = std::mem::take(&mut grown.failures);
             report(&request, &grown, voice, output)?;

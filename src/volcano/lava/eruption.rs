@@ -7,9 +7,11 @@ use super::{
     law::Law,
     params::LavaParams,
     schedule::Schedule,
+    tape::Now,
     vents::{APART, Source, Vent},
 };
 use crate::{
+    bake::{Frame, Tape},
     grid::{Edges, Field},
     noise::Key,
     world::{Mask, World},
@@ -81,16 +83,26 @@ impl Eruption {
 
     /// Runs from a moment to another, s after the eruption began.
     pub fn run(&mut self, from_s: f64, to_s: f64) -> Result<(), String> {
+        self.run_on(from_s, to_s, None)
+    }
+
+    /// The same, with a tape on which it is recorded: first at the beginning, then on where it was left.
+    pub fn run_on(&mut self, from_s: f64, to_s: f64, tape: Option<&dyn Tape>) -> Result<(), String> {
+        let take =
+            |frames: Vec<Frame>| frames.into_iter().try_for_each(|frame| tape.map_or(Ok(()), |tape| tape.take(frame)));
+        self.flow.glimpses.look(tape.map_or(0.0, |tape| tape.per_s()), (from_s > 0.0).then_some(from_s));
+        take(self.flow.glimpses.idle(from_s))?;
         let mut now = from_s;
         while now < to_s {
             self.freeze();
             self.flow.sort();
             self.emit();
             let left = to_s - now;
-            let dt =
-                if self.flow.cloud.is_empty() { self.pause(now, left) } else { self.flow.block(&self.land, left)? };
+            let still = self.flow.cloud.is_empty();
+            let dt = if still { self.pause(now, left) } else { self.block(now, left)? };
             // The last block ends where the run does.
             let next = if dt >= left { to_s } else { now + dt };
+            take(if still { self.flow.glimpses.idle(next) } else { self.develop(dt)? })?;
             let due = self.schedule.particles(now, next, self.law.volume_m3());
             for source in &mut self.sources {
                 source.owed += due * source.vent.share;
@@ -98,6 +110,23 @@ impl Eruption {
             now = next;
         }
         Ok(())
+    }
+
+    /// A block of steps from a moment on.
+    fn block(&mut self, now: f64, left: f64) -> Result<f64, String> {
+        let Flow { law, heat, glimpses, .. } = &mut self.flow;
+        glimpses.open(now, heat.iter().map(|&heat| law.degc(heat)));
+        self.flow.block(&self.land, left)
+    }
+
+    /// The frames that were due in a block that lasted so long.
+    fn develop(&mut self, lasted_s: f64) -> Result<Vec<Frame>, String> {
+        let Flow { law, heat, glimpses, born, age_s, .. } = &mut self.flow;
+        if !glimpses.any() {
+            return Ok(Vec::new());
+        }
+        let degc = heat.iter().map(|&heat| law.degc(heat)).collect();
+        glimpses.develop(lasted_s, self.land.datum_m, &Now { born, degc, age_s })
     }
 
     /// How long nothing happens where nothing flows.

@@ -9,6 +9,7 @@ use super::{
     land::Land,
     law::{GRAVITY, Law, SEA},
     stride::{Stride, fresh_speeds, half_ahead},
+    tape::Glimpses,
 };
 use crate::{
     grid::{Edges, Grid},
@@ -53,6 +54,8 @@ pub(super) struct Flow {
     /// Heat that has left, J.
     pub(super) lost: Lost,
     pub(super) engine: Engine,
+    /// What a recording sees of it.
+    pub(super) glimpses: Glimpses,
     stiffness: Stiffness,
     pulls: [Vec<[f32; 3]>; 2],
     fresh: Vec<[f32; 3]>,
@@ -86,6 +89,7 @@ impl Flow {
             born: Vec::new(),
             lost: Lost::default(),
             engine: Engine::default(),
+            glimpses: Glimpses::default(),
             stiffness: Stiffness::default(),
             pulls: Default::default(),
             fresh: Vec::new(),
@@ -175,6 +179,7 @@ impl Flow {
             most = self.step::<K>(land, &setting, dt as f32);
             self.check(&most, dt)?;
             done = if last { left_s } else { done + dt };
+            self.glimpses.pass(done, &self.cloud);
             if last || f64::from(most.way2).sqrt() > half_skin {
                 break;
             }

@@ -22,6 +22,7 @@ mod process;
 mod saved;
 mod schedule;
 mod stride;
+mod tape;
 #[cfg(test)]
 mod tests;
 mod vents;

@@ -1,7 +1,8 @@
 //! The stage `lava`.
 
-use super::{eruption::Eruption, law::Law, params::LavaParams};
+use super::{eruption::Eruption, law::Law, params::LavaParams, tape::columns};
 use crate::{
+    bake::Subject,
     grid::Grid,
     process::{Context, Placement, Process, ProcessError, State, Step},
     world::{Layer, Matter, Table, World},
@@ -126,6 +127,12 @@ impl Process for Lava {
         coarse.into_iter().chain(clocks).collect()
     }
 
+    fn subject(&self, grid: &Grid) -> Option<Subject> {
+        let volume_m3 = Law::new(&self.params, grid).volume_m3();
+        let radius_m = libm::cbrt(volume_m3 * 0.75 / std::f64::consts::PI);
+        Some(Subject { columns: columns(), duration_s: 60.0 * self.params.duration_min, radius_m })
+    }
+
     fn findings(&self) -> Vec<String> {
         self.gone.clone().into_iter().collect()
     }
@@ -142,7 +149,7 @@ impl Process for Lava {
         self.saved = None;
         let whole = 60.0 * self.params.duration_min;
         let [from, to] = [self.done, self.done + 1].map(|k| whole * (k as f64 / self.steps as f64));
-        run.run(from, to).map_err(ProcessError::Failed)?;
+        run.run_on(from, to, context.tape()).map_err(ProcessError::Failed)?;
         self.done += 1;
         if self.done >= self.steps {
             run.settle();
