@@ -17,6 +17,7 @@
 //! number (or to 0), folded so that small ones are small: 0, -1, 1, -2 as 0, 1, 2, 3. A value is least + unit * whole number.
 
 mod chunk;
+mod glimpse;
 mod header;
 mod play;
 mod read;
@@ -24,6 +25,7 @@ mod read;
 mod tests;
 mod write;
 
+pub use glimpse::Glimpses;
 pub use header::{Column, FORMAT, Header, RATES_PER_S};
 pub use play::{Between, Particle, Player};
 pub use read::{Chunk, ENDING, Reader};
@@ -67,8 +69,8 @@ pub struct Subject {
     pub columns: Vec<Column>,
     /// How long it is followed, s.
     pub duration_s: f64,
-    /// Radius of a ball with a particle's volume, m.
-    pub radius_m: f64,
+    /// Volume of a particle, m³.
+    pub volume_m3: f64,
 }
 
 /// Steps are counted in floating point, s.

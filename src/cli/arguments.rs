@@ -70,7 +70,7 @@ pub(crate) struct RawGrow {
     /// Keep the run's heights (and other layers, named with commas) in its store, to be filmed later
     #[arg(long, value_name = "LAYERS", num_args = 0..=1, require_equals = true, default_missing_value = "height")]
     pub keep_timeline: Option<String>,
-    /// Record the particles of each stage that has any (lava), into STAGE.upbake in the world's folder
+    /// Record the particles of each stage that has any (lava, rain_particles), into STAGE.upbake in the world's folder
     #[arg(long)]
     pub bake: bool,
     /// Frames of that to a second of the stage's own time [default: 30]
@@ -120,6 +120,9 @@ pub(crate) struct RawLook {
     /// Show the time in the film
     #[arg(long)]
     pub clock: bool,
+    /// Leave out the smoke over vents that erupt
+    #[arg(long)]
+    pub no_smoke: bool,
     /// What ffmpeg is told besides, in one text
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     pub ffmpeg_args: Option<String>,
@@ -227,6 +230,9 @@ pub(crate) struct RawRender {
     /// Plate borders and motions over it
     #[arg(long)]
     pub overlay: bool,
+    /// Smoke over the relief, where a vent erupts
+    #[arg(long)]
+    pub smoke: bool,
 }
 
 /// `app` as typed.

@@ -98,7 +98,7 @@ impl Command {
             RawCommand::Export(raw) => Command::Export(Box::new(export::validate(*raw)?)),
             RawCommand::Render(raw) => {
                 let (world, file) = (raw.world, raw.file);
-                Command::Render(Picture { world, file, view: raw.view, overlay: raw.overlay })
+                Command::Render(Picture { world, file, view: raw.view, overlay: raw.overlay, smoke: raw.smoke })
             }
             RawCommand::Film(raw) => {
                 let film = film::request(Some(raw.file), &raw.look, raw.force)?;

@@ -50,7 +50,7 @@ impl BakePlan {
                 parameters: stage.params.clone(),
                 extent_m: grid.extent_m(),
                 wraps: grid.edges == Edges::Wrap,
-                radius_m: subject.radius_m,
+                radius_m: libm::cbrt(subject.volume_m3 * 0.75 / std::f64::consts::PI),
                 columns: subject.columns,
                 frames_per_s: per_s,
                 frames: bake::frames_by(subject.duration_s, per_s),
@@ -67,7 +67,7 @@ impl BakePlan {
         }
         if stages.is_empty() {
             return Err(JobError::Refused(format!(
-                "--bake: no stage that runs has particles to record ('lava' has); this recipe has: {}",
+                "--bake: no stage that runs has particles to record ('lava' and 'rain_particles' have); this recipe has: {}",
                 plan.stage_names()
             )));
         }

@@ -139,7 +139,8 @@ fn the_last_picture_is_the_finished_world() {
         assert_eq!(std::fs::read_dir(place.path(folder)).unwrap().count(), PICTURES);
         let (world, _) = store::read(&place.path(world).join("world.zarr")).unwrap();
         let view = if view == "relief" { View::Relief } else { View::Layer(upthrust::world::Layer::Slope) };
-        let options = Options { size: [264, 136], view, range_m: [-9000.0, 9000.0], climate: false, title: None };
+        let options =
+            Options { size: [264, 136], view, range_m: [-9000.0, 9000.0], climate: false, smoke: true, title: None };
         let mut animation = Animation::new(world.grid, &options);
         let shot = animation.shot(&world).unwrap();
         let mut want = vec![0; animation.bytes()];

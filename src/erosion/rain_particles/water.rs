@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::{
+    bake::{Frame, Glimpses},
     grid::{Edges, Grid},
     sph::{
         Cells, Cloud, Domain, Forces, Kernel, Liquid, Lists, RUN, Reader, Scale, Touch, WendlandC2, Work, gather,
@@ -42,6 +43,8 @@ pub(super) struct Water {
     pub(super) load_m3: Vec<f64>,
     /// How many were born before it.
     pub(super) born: Vec<u64>,
+    /// What a recording sees of it.
+    pub(super) glimpses: Glimpses,
     /// Distance from the ground, m.
     pub(super) gap: Vec<f32>,
     normal: [Vec<f32>; 3],
@@ -102,6 +105,7 @@ impl Water {
             life_s: Vec::new(),
             load_m3: Vec::new(),
             born: Vec::new(),
+            glimpses: Glimpses::default(),
             gap: Vec::new(),
             normal: Default::default(),
             beyond: Vec::new(),
@@ -127,6 +131,28 @@ impl Water {
     #[cfg(test)]
     pub(super) fn density(&self) -> &[f32] {
         &self.forces.density
+    }
+
+    /// What a recording has besides the place: ages, s, and loads, m³.
+    fn age_and_load(&self) -> Vec<Vec<f64>> {
+        let lifespan_s = self.params.lifespan_s;
+        let ages = self.life_s.iter().map(|&left| (lifespan_s - f64::from(left)).max(0.0)).collect();
+        vec![ages, self.load_m3.clone()]
+    }
+
+    /// A block begins now, s after the stage did; somebody may look.
+    pub(super) fn look(&mut self, now_s: f64) {
+        let mut glimpses = std::mem::take(&mut self.glimpses);
+        glimpses.open(now_s, || self.age_and_load());
+        self.glimpses = glimpses;
+    }
+
+    /// The frames that were due in a block that lasted so long.
+    pub(super) fn develop(&mut self, lasted_s: f64, datum_m: f32) -> Result<Vec<Frame>, String> {
+        let mut glimpses = std::mem::take(&mut self.glimpses);
+        let frames = glimpses.develop((lasted_s, datum_m), &self.born, || self.age_and_load());
+        self.glimpses = glimpses;
+        frames
     }
 
     /// One particle more.
@@ -204,6 +230,8 @@ impl Water {
             self.forces.accelerations::<WendlandC2>(&self.cloud, &self.lists, self.domain, &self.liquid);
             most = self.walk(ground, dt as f32, top as f32);
             done = if last { left_s } else { done + dt };
+            let Cloud { x, y, z, vx, vy, vz } = &self.cloud;
+            self.glimpses.pass(done, [x, y, z], [vx, vy, vz]);
             if last || (most.way2 as f64).sqrt() > half {
                 break;
             }

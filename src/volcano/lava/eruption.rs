@@ -7,7 +7,6 @@ use super::{
     law::Law,
     params::LavaParams,
     schedule::Schedule,
-    tape::Now,
     vents::{APART, Source, Vent},
 };
 use crate::{
@@ -19,6 +18,8 @@ use crate::{
 
 /// How far below the lowest ground a particle is out of the world, m.
 const DEEP_M: f32 = 1e4;
+/// Names and units of what is recorded.
+pub(super) const COLUMNS: [[&str; 2]; 5] = [["x", "m"], ["y", "m"], ["z", "m"], ["temperature", "degC"], ["age", "s"]];
 /// Time between looks at vents where nothing flows, s.
 const IDLE_S: f64 = 0.05;
 
@@ -90,8 +91,8 @@ impl Eruption {
     pub fn run_on(&mut self, from_s: f64, to_s: f64, tape: Option<&dyn Tape>) -> Result<(), String> {
         let take =
             |frames: Vec<Frame>| frames.into_iter().try_for_each(|frame| tape.map_or(Ok(()), |tape| tape.take(frame)));
-        self.flow.glimpses.look(tape.map_or(0.0, |tape| tape.per_s()), (from_s > 0.0).then_some(from_s));
-        take(self.flow.glimpses.idle(from_s))?;
+        self.flow.glimpses.look(tape.map_or(0.0, |tape| tape.per_s()), from_s);
+        take(self.flow.glimpses.idle(from_s, COLUMNS.len()))?;
         let mut now = from_s;
         while now < to_s {
             self.freeze();
@@ -102,7 +103,7 @@ impl Eruption {
             let dt = if still { self.pause(now, left) } else { self.block(now, left)? };
             // The last block ends where the run does.
             let next = if dt >= left { to_s } else { now + dt };
-            take(if still { self.flow.glimpses.idle(next) } else { self.develop(dt)? })?;
+            take(if still { self.flow.glimpses.idle(next, COLUMNS.len()) } else { self.develop(dt)? })?;
             let due = self.schedule.particles(now, next, self.law.volume_m3());
             for source in &mut self.sources {
                 source.owed += due * source.vent.share;
@@ -114,19 +115,19 @@ impl Eruption {
 
     /// A block of steps from a moment on.
     fn block(&mut self, now: f64, left: f64) -> Result<f64, String> {
-        let Flow { law, heat, glimpses, .. } = &mut self.flow;
-        glimpses.open(now, heat.iter().map(|&heat| law.degc(heat)));
+        let mut glimpses = std::mem::take(&mut self.flow.glimpses);
+        glimpses.open(now, || self.flow.heat_and_age());
+        self.flow.glimpses = glimpses;
         self.flow.block(&self.land, left)
     }
 
     /// The frames that were due in a block that lasted so long.
     fn develop(&mut self, lasted_s: f64) -> Result<Vec<Frame>, String> {
-        let Flow { law, heat, glimpses, born, age_s, .. } = &mut self.flow;
-        if !glimpses.any() {
-            return Ok(Vec::new());
-        }
-        let degc = heat.iter().map(|&heat| law.degc(heat)).collect();
-        glimpses.develop(lasted_s, self.land.datum_m, &Now { born, degc, age_s })
+        let mut glimpses = std::mem::take(&mut self.flow.glimpses);
+        let (flow, datum_m) = (&self.flow, self.land.datum_m);
+        let frames = glimpses.develop((lasted_s, datum_m), &flow.born, || flow.heat_and_age());
+        self.flow.glimpses = glimpses;
+        frames
     }
 
     /// How long nothing happens where nothing flows.

@@ -9,9 +9,9 @@ use super::{
     land::Land,
     law::{GRAVITY, Law, SEA},
     stride::{Stride, fresh_speeds, half_ahead},
-    tape::Glimpses,
 };
 use crate::{
+    bake::Glimpses,
     grid::{Edges, Grid},
     sph::{
         Around, Cells, Cloud, CubicSpline, DesbrunGascuel, Domain, Kernel, Liquid, Lists, RUN, WendlandC2, gather,
@@ -179,7 +179,8 @@ impl Flow {
             most = self.step::<K>(land, &setting, dt as f32);
             self.check(&most, dt)?;
             done = if last { left_s } else { done + dt };
-            self.glimpses.pass(done, &self.cloud);
+            let Cloud { x, y, z, vx, vy, vz } = &self.cloud;
+            self.glimpses.pass(done, [x, y, z], [vx, vy, vz]);
             if last || f64::from(most.way2).sqrt() > half_skin {
                 break;
             }
@@ -389,6 +390,12 @@ impl Flow {
                 self.heat[i] < rock && grounded()
             })
             .collect()
+    }
+
+    /// What a recording has besides the place: temperatures, °C, and ages, s.
+    pub(super) fn heat_and_age(&self) -> Vec<Vec<f64>> {
+        let degc = (0..self.cloud.len()).map(|i| self.temperature(i)).collect();
+        vec![degc, self.age_s.iter().map(|&age| f64::from(age)).collect()]
     }
 
     /// Temperature of a particle, °C.

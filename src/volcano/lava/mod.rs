@@ -21,8 +21,8 @@ mod params;
 mod process;
 mod saved;
 mod schedule;
+mod smoke;
 mod stride;
-mod tape;
 #[cfg(test)]
 mod tests;
 mod vents;

@@ -1,8 +1,12 @@
 //! The stage `lava`.
 
-use super::{eruption::Eruption, law::Law, params::LavaParams, tape::columns};
+use super::{
+    eruption::{COLUMNS, Eruption},
+    law::Law,
+    params::LavaParams,
+};
 use crate::{
-    bake::Subject,
+    bake::{Column, Subject},
     grid::Grid,
     process::{Context, Placement, Process, ProcessError, State, Step},
     world::{Layer, Matter, Table, World},
@@ -44,6 +48,7 @@ impl Lava {
         let run = Eruption::new(&self.params, world, self.placement.mask.as_ref(), context.key);
         let run = run.map_err(ProcessError::Unfit)?;
         world.ledger.open(context.stage, Matter::Lava, 0.0);
+        world.add_plumes(&self.params.plumes(&run.sources, &run.schedule, world, context.key));
         Ok(run)
     }
 
@@ -129,8 +134,8 @@ impl Process for Lava {
 
     fn subject(&self, grid: &Grid) -> Option<Subject> {
         let volume_m3 = Law::new(&self.params, grid).volume_m3();
-        let radius_m = libm::cbrt(volume_m3 * 0.75 / std::f64::consts::PI);
-        Some(Subject { columns: columns(), duration_s: 60.0 * self.params.duration_min, radius_m })
+        let columns = COLUMNS.iter().map(|[name, unit]| Column::new(name, unit)).collect();
+        Some(Subject { columns, duration_s: 60.0 * self.params.duration_min, volume_m3 })
     }
 
     fn findings(&self) -> Vec<String> {
