@@ -60,7 +60,7 @@ pub struct Grown {
     pub manifest: String,
     /// What a person should know of what its stages met, a line each.
     pub notes: Vec<String>,
-    /// Films and frames that were made outside the folder, and the film in it.
+    /// Films and frames that were made outside the folder, and the film and the recordings in it.
     pub films: Vec<PathBuf>,
     /// Why films or frames that were asked for are not there; the world is, all the same.
     pub failures: Vec<JobError>,
@@ -137,6 +137,7 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     manifest.stages = stages;
     manifest.in_time = in_time.into_iter().filter(|(_, made)| *made).map(|(file, _)| file).collect();
     manifest.baked = bakes.map_or(Ok(Vec::new()), |bakes| bakes.finish(&partial.path()))?;
+    films.extend(manifest.baked.iter().map(|file| out.join(file)));
     manifest.until = ended;
     manifest.seconds = started.elapsed().as_secs_f64();
     manifest.write(&partial.path())?;
