@@ -48,7 +48,7 @@ pub(crate) struct Grow {
 /// A world's folder or a sheet.
 #[derive(Debug)]
 pub(crate) enum Aim {
-    Folder(Folder),
+    Folder(Box<Folder>),
     Sheet { seeds: RangeInclusive<u64>, file: PathBuf },
 }
 
@@ -130,7 +130,8 @@ fn grow(raw: RawGrow) -> Result<Grow, CliError> {
             let keep = raw.keep_timeline.as_deref().map(film::layers).transpose()?;
             let bake_per_s = bake(&raw)?;
             let (out, until) = (raw.out, raw.until);
-            Aim::Folder(Folder { out, existing, checkpoint_every, until, film, frames, bake_per_s, keep })
+            let folder = Folder { out, existing, checkpoint_every, until, film, frames, bake_per_s, keep };
+            Aim::Folder(Box::new(folder))
         }
         (Some(_), None) => return wrong("--seeds draws a contact sheet; name it with --sheet FILE.png"),
         (None, Some(_)) => return wrong("--sheet draws several seeds; name them with --seeds A..B"),

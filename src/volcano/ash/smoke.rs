@@ -12,9 +12,9 @@ const LOOSE: f64 = 0.4;
 /// A column of `H` km has magma of `(H/2)^(1/0.241)` m³/s (Mastin et al., J. Volcanol. Geotherm. Res. 186 (2009), 10–21).
 const MASTIN: [f64; 2] = [2.0, 0.241];
 /// How long puffs are seen, s, how fast their rise slows, s, and how many there are a second.
-const LASTS_S: f64 = 600.0;
+const LASTS_S: f64 = 1500.0;
 const SLOWS_S: f64 = 120.0;
-const PUFFS_PER_S: f64 = 0.5;
+const PUFFS_PER_S: f64 = 0.3;
 /// Radius of a vent of which nothing is known, m.
 const RADIUS_M: f64 = 100.0;
 /// Seconds in a year.

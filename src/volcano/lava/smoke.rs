@@ -1,21 +1,35 @@
 //! Smoke over the vents, for those who draw: as long as lava is due to come out.
 
-use super::{params::LavaParams, schedule::Schedule, vents::Source};
+use super::{
+    params::LavaParams,
+    schedule::Schedule,
+    vents::{Source, Vent},
+};
 use crate::{
     grid::linear,
     noise::Key,
     world::{Plume, World},
 };
 
-/// Puffs a second, how fast their rise slows, s, how long they last, s, and how much wider they get for a metre of rise.
-const PUFFS_PER_S: f64 = 3.0;
+/// Puffs a second of a vent; a fissure has as many more for each stretch of so many of its half widths, at most so many.
+const PUFFS_PER_S: f64 = 4.0;
+const STRETCH: f64 = 8.0;
+const MOST_PER_S: f64 = 20.0;
+/// How fast their rise slows, s, how long they last, s, and how much wider they get for a metre of rise.
 const SLOWS_S: f64 = 15.0;
-const LASTS_S: f64 = 30.0;
-const SWELL: f64 = 0.18;
+const LASTS_S: f64 = 40.0;
+const SWELL: f64 = 0.2;
 /// Height over the vent at which the wind is that of the recipe, m.
 const WIND_AT_M: f64 = 100.0;
 /// Seconds in a year.
 const YEAR_S: f64 = 365.25 * 86_400.0;
+
+/// Puffs a second of a vent.
+fn puffs_per_s(vent: &Vent) -> f64 {
+    let [x, y] = [0, 1].map(|axis| vent.to_m[axis] - vent.from_m[axis]);
+    let stretches = libm::hypot(x, y) / (STRETCH * vent.radius_m.max(1.0));
+    (PUFFS_PER_S * (1.0 + stretches)).min(MOST_PER_S)
+}
 
 impl LavaParams {
     /// The smoke of an eruption that begins now: a plume for each vent and each time in which lava comes out without a pause.
@@ -34,7 +48,7 @@ impl LavaParams {
                 radius_m: vent.radius_m,
                 begin_yr: world.time_yr + begin_s / YEAR_S,
                 end_yr: world.time_yr + end_s / YEAR_S,
-                puffs_per_s: PUFFS_PER_S,
+                puffs_per_s: puffs_per_s(vent),
                 rise_m_per_s: self.smoke_m_per_s,
                 slows_s: SLOWS_S,
                 swell: SWELL,

@@ -37,7 +37,7 @@ fn params() -> LavaParams {
         duration_min: 0.1,
         schedule: vec![Timed::particles(0.2, 1.5, 120.0), Timed::particles(2.5, 1.0, 60.0)],
         spacing_m: 1.0,
-        cooling_factor: 200.0,
+        cooling_factor: 3000.0,
         ..LavaParams::default()
     }
 }
@@ -79,7 +79,7 @@ fn frames_are_the_state_at_their_time_and_change_nothing() {
         assert_eq!(&frames[20 * (step + 1)], state, "second {}", step + 1);
     }
     // Nothing before the schedule begins; later some have frozen, and some flow.
-    assert!(frames[..=4].iter().all(|frame| frame.id.is_empty()) && frames[40].id.len() > 100);
+    assert!(frames[..=4].iter().all(|frame| frame.id.is_empty()) && frames[40].id.len() > 50);
     assert!(own.counts()[1] > 0, "some froze: {:?}", own.counts());
     for pair in frames.windows(2) {
         for (i, id) in pair[0].id.iter().enumerate() {
