@@ -30,6 +30,7 @@ fn options() -> Options {
         view: View::Relief,
         range_m: [-8000.0, 6000.0],
         climate: false,
+        smoke: false,
         title: Some("Film".to_owned()),
     }
 }

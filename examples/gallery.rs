@@ -215,9 +215,11 @@ fn request(preset: &Preset, folder: &Path) -> Outcome<job::Request> {
             size: Some([1120, 630]),
             view: "relief".to_owned(),
             clock: true,
+            smoke: true,
             ..FilmRequest::default()
         }),
         frames: None,
+        bake_per_s: None,
         keep: None,
     })
 }

@@ -5,7 +5,9 @@
 //!
 //! - [`grid`], [`noise`], [`rmp`], [`sph`], [`flow`]: rasters in metres, keyed randomness, random partitions, particles, the ways of water.
 //!   Numerics only.
-//! - [`world`], [`process`]: what all solvers meet through, and what a solver looks like.
+//! - [`world`]: what all solvers meet through.
+//! - [`bake`]: recordings of particles, their file, and playback.
+//! - [`process`]: what a solver looks like.
 //! - [`crust`]: how high a column of rock floats.
 //! - [`terrain`], [`tectonics`], [`climate`], [`erosion`], [`volcano`], [`rivers`], [`edit`]: the stages. They never import each other.
 //! - [`recipe`], [`timeline`]: a recipe becomes a checked plan, a plan becomes a world.
@@ -24,6 +26,8 @@ pub mod sph;
 pub mod flow;
 
 pub mod world;
+
+pub mod bake;
 
 pub mod process;
 

@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    bake::{Subject, Tape},
     grid::{Field, Grid, sum_f64},
     noise::Key,
     world::{Layer, Mask, MaskError, Matter, World},
@@ -50,6 +51,12 @@ pub trait Process: Send {
     /// asked about the right one.
     fn grid_after(&self, grid: &Grid) -> Grid {
         *grid
+    }
+
+    /// What it has to be recorded on a map of this grid, for those that move particles: they hand frames to
+    /// [`Context::tape`] while they step.
+    fn subject(&self, _grid: &Grid) -> Option<Subject> {
+        None
     }
 
     /// Whether the ground is that of the present after every step, also without [`Process::publish`].
@@ -115,12 +122,23 @@ pub struct Context<'a> {
     /// The stage's name in the ledger.
     pub stage: &'a str,
     cancel: &'a AtomicBool,
+    tape: Option<&'a dyn Tape>,
 }
 
 impl<'a> Context<'a> {
     /// A context for the stage called `stage` of a recipe with this seed.
     pub fn new(seed: u64, stage: &'a str, cancel: &'a AtomicBool) -> Self {
-        Self { key: Key::new(seed).named(stage), stage, cancel }
+        Self { key: Key::new(seed).named(stage), stage, cancel, tape: None }
+    }
+
+    /// The same with a tape on which particles are recorded.
+    pub fn recording(self, tape: Option<&'a dyn Tape>) -> Self {
+        Self { tape, ..self }
+    }
+
+    /// Where frames of particles go, if anybody wants them. What a step does must not depend on it.
+    pub fn tape(&self) -> Option<&'a dyn Tape> {
+        self.tape
     }
 
     /// An error if the user asked to stop; long steps ask between their passes.

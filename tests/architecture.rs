@@ -9,13 +9,14 @@ use std::{
 };
 
 /// The rooms; a room imports only rooms before it.
-const ROOMS: [&str; 26] = [
+const ROOMS: [&str; 27] = [
     "grid",
     "noise",
     "rmp",
     "sph",
     "flow",
     "world",
+    "bake",
     "process",
     "crust",
     "terrain",
@@ -40,13 +41,14 @@ const ROOMS: [&str; 26] = [
 /// They meet only through the world.
 const STAGE_ROOMS: [&str; 7] = ["terrain", "tectonics", "climate", "erosion", "volcano", "rivers", "edit"];
 /// Dependencies that only some rooms may name.
-const CONFINED: [(&str, &[&str]); 9] = [
+const CONFINED: [(&str, &[&str]); 10] = [
     ("wgpu", &["render", "app"]),
     ("pollster", &["render", "app"]),
     ("egui", &["app"]),
     ("eframe", &["app"]),
     ("rapier2d", &["tectonics"]),
     ("zarrs", &["world"]),
+    ("zstd", &["bake"]),
     ("spade", &["rmp"]),
     ("tiny_skia", &["rmp", "relief"]),
     ("clap", &["cli"]),

@@ -70,6 +70,12 @@ pub(crate) struct RawGrow {
     /// Keep the run's heights (and other layers, named with commas) in its store, to be filmed later
     #[arg(long, value_name = "LAYERS", num_args = 0..=1, require_equals = true, default_missing_value = "height")]
     pub keep_timeline: Option<String>,
+    /// Record the particles of each stage that has any (lava, rain_particles), into STAGE.upbake in the world's folder
+    #[arg(long)]
+    pub bake: bool,
+    /// Frames of that to a second of the stage's own time [default: 30]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub bake_rate: Option<String>,
     /// Write numbered 16-bit heightmaps of the run into a new folder, all with one range
     #[arg(long, value_name = "DIR")]
     pub frames: Option<PathBuf>,
@@ -114,6 +120,9 @@ pub(crate) struct RawLook {
     /// Show the time in the film
     #[arg(long)]
     pub clock: bool,
+    /// Leave out the smoke over vents that erupt
+    #[arg(long)]
+    pub no_smoke: bool,
     /// What ffmpeg is told besides, in one text
     #[arg(long, value_name = "TEXT", allow_hyphen_values = true)]
     pub ffmpeg_args: Option<String>,
@@ -149,7 +158,7 @@ pub(crate) struct RawParams {
 /// `inspect` as typed.
 #[derive(Debug, Args)]
 pub(crate) struct RawInspect {
-    /// The world's folder, or the store in it; of several, how their numbers spread
+    /// The world's folder, or the store in it; of several, how their numbers spread; or a recording of particles (.upbake)
     #[arg(required = true, value_name = "WORLD")]
     pub worlds: Vec<PathBuf>,
     /// Print JSON
@@ -163,9 +172,9 @@ pub(crate) struct RawInspect {
 /// `export` as typed.
 #[derive(Debug, Args)]
 pub(crate) struct RawExport {
-    /// The world's folder, or the store in it
+    /// The world's folder, or the store in it; or a recording of particles (.upbake)
     pub world: PathBuf,
-    /// The file: .png .tif .exr .asc .r16 .raw .r32, meshes .glb .obj .stl, maps of lines .svg .geojson
+    /// The file: .png .tif .exr .asc .r16 .raw .r32, meshes .glb .obj .stl, maps of lines .svg .geojson, particles .ply .csv
     pub file: PathBuf,
     /// A layer, normals (a normal map) or weights (of sand, grass, rock and snow)
     #[arg(long, value_name = "NAME", default_value = "height")]
@@ -200,6 +209,9 @@ pub(crate) struct RawExport {
     /// Metres between contours (.svg .geojson) [default: a round number, about a dozen on land]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub contours: Option<String>,
+    /// The moment of a recording, since its stage began
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub at: Option<String>,
     /// Replace files that exist
     #[arg(long)]
     pub force: bool,
@@ -218,6 +230,9 @@ pub(crate) struct RawRender {
     /// Plate borders and motions over it
     #[arg(long)]
     pub overlay: bool,
+    /// Smoke over the relief, where a vent erupts
+    #[arg(long)]
+    pub smoke: bool,
 }
 
 /// `app` as typed.

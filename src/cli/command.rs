@@ -3,8 +3,9 @@
 use std::{ops::RangeInclusive, path::PathBuf, time::Duration};
 
 use crate::{
+    bake::RATES_PER_S,
     job::{
-        Existing, ExportRequest, Picture, SHEET_MOST,
+        BAKE_PER_S, Existing, ExportRequest, Picture, SHEET_MOST,
         film::{FilmRequest, FramesRequest},
     },
     recipe::{Overrides, Source, find_stage, nearest, stage_kinds},
@@ -47,7 +48,7 @@ pub(crate) struct Grow {
 /// A world's folder or a sheet.
 #[derive(Debug)]
 pub(crate) enum Aim {
-    Folder(Folder),
+    Folder(Box<Folder>),
     Sheet { seeds: RangeInclusive<u64>, file: PathBuf },
 }
 
@@ -60,6 +61,7 @@ pub(crate) struct Folder {
     pub until: Option<String>,
     pub film: Option<FilmRequest>,
     pub frames: Option<FramesRequest>,
+    pub bake_per_s: Option<f64>,
     pub keep: Option<Vec<Layer>>,
 }
 
@@ -96,7 +98,7 @@ impl Command {
             RawCommand::Export(raw) => Command::Export(Box::new(export::validate(*raw)?)),
             RawCommand::Render(raw) => {
                 let (world, file) = (raw.world, raw.file);
-                Command::Render(Picture { world, file, view: raw.view, overlay: raw.overlay })
+                Command::Render(Picture { world, file, view: raw.view, overlay: raw.overlay, smoke: raw.smoke })
             }
             RawCommand::Film(raw) => {
                 let film = film::request(Some(raw.file), &raw.look, raw.force)?;
@@ -126,7 +128,10 @@ fn grow(raw: RawGrow) -> Result<Grow, CliError> {
             let checkpoint_every = raw.checkpoint_every.as_deref().map_or(Ok(timeline::EVERY), seconds)?;
             let (film, frames) = (film::film(&raw)?, film::frames(&raw)?);
             let keep = raw.keep_timeline.as_deref().map(film::layers).transpose()?;
-            Aim::Folder(Folder { out: raw.out, existing, checkpoint_every, until: raw.until, film, frames, keep })
+            let bake_per_s = bake(&raw)?;
+            let (out, until) = (raw.out, raw.until);
+            let folder = Folder { out, existing, checkpoint_every, until, film, frames, bake_per_s, keep };
+            Aim::Folder(Box::new(folder))
         }
         (Some(_), None) => return wrong("--seeds draws a contact sheet; name it with --sheet FILE.png"),
         (None, Some(_)) => return wrong("--sheet draws several seeds; name them with --seeds A..B"),
@@ -141,6 +146,7 @@ fn grow(raw: RawGrow) -> Result<Grow, CliError> {
                 ("--checkpoint-every", raw.checkpoint_every.is_some()),
                 ("--video", raw.video.is_some()),
                 ("--frames", raw.frames.is_some()),
+                ("--bake", raw.bake || raw.bake_rate.is_some()),
                 ("--keep-timeline", raw.keep_timeline.is_some()),
             ];
             if let Some((flag, _)) = other.iter().find(|(_, given)| *given) {
@@ -167,6 +173,19 @@ fn seconds(text: &str) -> Result<Duration, CliError> {
     match text.parse::<f64>() {
         Ok(s) if (0.0..=86_400.0).contains(&s) => Ok(Duration::from_secs_f64(s)),
         _ => wrong(format!("--checkpoint-every {text}: must be a number of seconds from 0 to 86400")),
+    }
+}
+
+/// Frames to a second that particles are recorded with, if they are.
+fn bake(raw: &RawGrow) -> Result<Option<f64>, CliError> {
+    let [slow, fast] = RATES_PER_S;
+    match raw.bake_rate.as_deref().map(|text| (text, text.parse::<f64>())) {
+        None => Ok(raw.bake.then_some(BAKE_PER_S)),
+        Some(_) if !raw.bake => wrong("--bake-rate is about the recording of particles; ask for it with --bake"),
+        Some((_, Ok(rate))) if (slow..=fast).contains(&rate) => Ok(Some(rate)),
+        Some((text, _)) => {
+            wrong(format!("--bake-rate {text}: must be a number of frames a second from {slow} to {fast}"))
+        }
     }
 }
 

@@ -28,6 +28,7 @@ pub(crate) fn validate(raw: RawExport) -> Result<ExportRequest, CliError> {
         south_first: raw.flip.as_deref().map(flip).transpose()?.unwrap_or(false),
         green: raw.normal_y.as_deref().map(green).transpose()?,
         contours_m: raw.contours.as_deref().map(contours).transpose()?,
+        at_s: raw.at.as_deref().map(moment).transpose()?,
         world: raw.world,
         file: raw.file,
         layer: raw.layer,
@@ -104,6 +105,13 @@ fn contours(text: &str) -> Result<f64, CliError> {
     match text.parse::<f64>() {
         Ok(m) if m.is_finite() && m > 0.0 => Ok(m),
         _ => wrong(format!("--contours {text}: must be a number of metres above 0, such as 100")),
+    }
+}
+
+fn moment(text: &str) -> Result<f64, CliError> {
+    match text.parse::<f64>() {
+        Ok(s) if s.is_finite() && s >= 0.0 => Ok(s),
+        _ => wrong(format!("--at {text}: must be a number of seconds from 0")),
     }
 }
 

@@ -62,6 +62,7 @@ pub(crate) fn request(file: Option<PathBuf>, look: &RawLook, replace: bool) -> R
         size: look.video_size.as_deref().map(size).transpose()?,
         view: look.view.clone().unwrap_or_else(|| "relief".to_owned()),
         clock: look.clock,
+        smoke: !look.no_smoke,
         ffmpeg_args,
         replace,
     })

@@ -23,10 +23,11 @@ pub(crate) fn run(grow: Grow, cancel: &AtomicBool, output: &mut Output) -> Resul
     let pool = builder.build().map_err(|e| CliError::System(format!("cannot start the threads: {e}")))?;
     let voice = grow.voice;
     match grow.aim {
-        Aim::Folder(Folder { out, existing, checkpoint_every, until, film, frames, keep }) => {
+        Aim::Folder(folder) => {
+            let Folder { out, existing, checkpoint_every, until, film, frames, bake_per_s, keep } = *folder;
             let plan = Plan::new(&grow.source, &grow.overrides)?;
-            let request = Request { plan, out, existing, checkpoint_every, until, film, frames, keep };
-            let mut grown = pool.install(|| folder(&request, voice, cancel))?;
+            let request = Request { plan, out, existing, checkpoint_every, until, film, frames, bake_per_s, keep };
+            let mut grown = pool.install(|| grown(&request, voice, cancel))?;
             let failures = std::mem::take(&mut grown.failures);
             report(&request, &grown, voice, output)?;
             // The world is there; what was asked for besides is not.
@@ -45,7 +46,7 @@ pub(crate) fn run(grow: Grow, cancel: &AtomicBool, output: &mut Output) -> Resul
     }
 }
 
-fn folder(request: &Request, voice: Voice, cancel: &AtomicBool) -> Result<Grown, CliError> {
+fn grown(request: &Request, voice: Voice, cancel: &AtomicBool) -> Result<Grown, CliError> {
     if voice == Voice::Normal {
         request.plan.notes.iter().for_each(|note| say(&format!("note: {note}")));
     }

@@ -3,7 +3,7 @@
 //! A height is what it was when the stage began plus what has changed since. The two are kept apart: a micrometre laid
 //! down on a mountain of 4 km is lost in their sum, but not in the change.
 
-use crate::grid::Grid;
+use crate::{bake::Tape, grid::Grid};
 
 /// The ground that a family of erosion works on.
 #[derive(Clone, Debug)]
@@ -144,6 +144,11 @@ pub struct Saved {
 pub trait Family: Send {
     /// Takes one step of the stage. The bed's `change` alone is written to.
     fn advance(&mut self, bed: &mut Bed, part: Part) -> Moved;
+
+    /// The same, and hands frames of its particles to a tape, if it has any.
+    fn advance_on(&mut self, bed: &mut Bed, part: Part, _tape: Option<&dyn Tape>) -> Result<Moved, String> {
+        Ok(self.advance(bed, part))
+    }
 
     /// Rock that is on its way at the moment, m³: worn off, not yet laid down, not gone either.
     fn carried_m3(&self) -> f64 {

@@ -10,6 +10,7 @@ use super::{
     weathering::pace,
 };
 use crate::{
+    bake::Subject,
     grid::{Field, Grid, for_each_row, sum_f64, sum_rows},
     noise::Key,
     process::{Context, Placement, Process, ProcessError, State, Step},
@@ -67,6 +68,11 @@ pub trait FamilyParams: Send + Sync + 'static {
     /// What a person should know of it before it runs, a line each.
     fn remarks(&self, _grid: &Grid) -> Vec<String> {
         Vec::new()
+    }
+
+    /// What it has to be recorded, if it moves particles.
+    fn subject(&self, _grid: &Grid) -> Option<Subject> {
+        None
     }
 
     /// The solver.
@@ -285,6 +291,10 @@ impl<T: FamilyParams> Process for Stage<T> {
         self.params.remarks(grid)
     }
 
+    fn subject(&self, grid: &Grid) -> Option<Subject> {
+        self.params.subject(grid)
+    }
+
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
         context.check()?;
         let mut run = match (self.run.take(), &self.saved) {
@@ -297,7 +307,8 @@ impl<T: FamilyParams> Process for Stage<T> {
         self.saved = None;
         let part = Part { step: self.done, steps: self.steps };
         let (before, carried_m3) = (run.bed.change.clone(), run.solver.carried_m3());
-        let mut moved = run.solver.advance(&mut run.bed, part);
+        let moved = run.solver.advance_on(&mut run.bed, part, context.tape());
+        let mut moved = moved.map_err(ProcessError::Failed)?;
         if part.step + 1 >= part.steps {
             moved += run.solver.settle(&mut run.bed);
         }

@@ -6,6 +6,7 @@
 //!   lock                         held by the run that fills it
 //!   checkpoints/                 see `timeline`
 //!   timeline/                    kept frames, if they are asked for
+//!   bake/                        recordings of particles so far, if they are asked for
 //!   series.notes profiles.notes  rows of series.csv and profiles.csv so far
 //!   world/                       what will be the finished world
 //! ```
@@ -128,6 +129,11 @@ impl Partial {
     /// Where to keep the timeline while it grows.
     pub fn timeline(&self) -> PathBuf {
         self.beside.join("timeline")
+    }
+
+    /// Where to record particles while it grows.
+    pub fn bake(&self) -> PathBuf {
+        self.beside.join("bake")
     }
 
     fn has_checkpoint(&self) -> bool {

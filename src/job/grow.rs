@@ -11,7 +11,7 @@ use crate::{
     export, measure,
     recipe::Plan,
     relief,
-    timeline::{Checkpoint, Checkpoints, Moment, Sink, StageRecord, Timeline, TimelineError},
+    timeline::{Checkpoint, Checkpoints, Moment, Recorder, Sink, StageRecord, Timeline, TimelineError},
     world::{
         Layer, World,
         store::{self, Provenance},
@@ -20,6 +20,7 @@ use crate::{
 
 use super::{
     Event, Existing, HEIGHT, JobError, MANIFEST, Manifest, RELIEF, STORE,
+    bake::BakePlan,
     film::{Film, FilmPlan, FilmRequest, FilmSink, FramesRequest, HeightFrames, made},
     folder::{Partial, free, newest},
     keep::KeepSink,
@@ -44,6 +45,8 @@ pub struct Request {
     pub film: Option<FilmRequest>,
     /// Heightmaps of the run.
     pub frames: Option<FramesRequest>,
+    /// Recordings of the particles of its stages, so many frames to a second of their time.
+    pub bake_per_s: Option<f64>,
     /// Layers to keep along the run, in the store; the height always is one of them.
     pub keep: Option<Vec<Layer>>,
 }
@@ -57,7 +60,7 @@ pub struct Grown {
     pub manifest: String,
     /// What a person should know of what its stages met, a line each.
     pub notes: Vec<String>,
-    /// Films and frames that were made outside the folder, and the film in it.
+    /// Films and frames that were made outside the folder, and the film and the recordings in it.
     pub films: Vec<PathBuf>,
     /// Why films or frames that were asked for are not there; the world is, all the same.
     pub failures: Vec<JobError>,
@@ -74,9 +77,11 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
         (None, _) => free(&stem),
     };
     let ended = until.map(|stage| plan.stages[stage].label.clone());
+    let bake = request.bake_per_s.map(|per_s| BakePlan::new(plan, until, per_s)).transpose()?;
     if request.existing == Existing::Resume
         && let Some(grown) = finished(plan, ended.as_deref(), &out)?
     {
+        bake.map_or(Ok(()), |bake| bake.stands_in(&out))?;
         return Ok(grown);
     }
     // What cannot be done is said before anything is begun.
@@ -98,6 +103,7 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     } else if request.existing == Existing::Resume {
         tell(Event::Anew);
     }
+    let bakes = bake.map(|bake| bake.begin(&partial.bake(), from.as_ref())).transpose()?;
     let place = from.as_ref().map(Checkpoint::place);
     let keep = |layers| KeepSink::begin(&partial.timeline(), plan.world.grid(), layers, place);
     let mut keep = kept_layers(request, until)?.as_deref().map(keep).transpose()?;
@@ -107,7 +113,9 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     sinks.extend(film.as_mut().map(|film| film as &mut dyn Sink));
     sinks.extend(frames.as_mut().map(|frames| frames as &mut dyn Sink));
     sinks.extend(keep.as_mut().map(|keep| keep as &mut dyn Sink));
-    let mut timeline = Timeline::new(plan, cancel).until(until).keeping(&mut checkpoints).from(from);
+    let recorder = bakes.as_ref().map(|bakes| bakes as &dyn Recorder);
+    let mut timeline =
+        Timeline::new(plan, cancel).until(until).keeping(&mut checkpoints).from(from).recording(recorder);
     let world = timeline.run(&mut sinks, &mut |moment| tell(Event::Step(moment)));
     let stages = timeline.records().to_vec();
     let kept = checkpoints.any();
@@ -128,6 +136,8 @@ pub fn grow(request: &Request, cancel: &AtomicBool, tell: &mut dyn FnMut(Event))
     let notes = findings(plan, &stages);
     manifest.stages = stages;
     manifest.in_time = in_time.into_iter().filter(|(_, made)| *made).map(|(file, _)| file).collect();
+    manifest.baked = bakes.map_or(Ok(Vec::new()), |bakes| bakes.finish(&partial.path()))?;
+    films.extend(manifest.baked.iter().map(|file| out.join(file)));
     manifest.until = ended;
     manifest.seconds = started.elapsed().as_secs_f64();
     manifest.write(&partial.path())?;

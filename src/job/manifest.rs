@@ -57,6 +57,9 @@ pub struct Manifest {
     pub stages: Vec<StageRecord>,
     /// Files with the run's numbers in time: a row a step, and the rivers' long profiles.
     pub in_time: Vec<&'static str>,
+    /// Recordings of particles.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub baked: Vec<String>,
     /// Threads that worked.
     pub threads: usize,
     /// Seconds from the first step to the last file.
@@ -86,6 +89,7 @@ impl Manifest {
             ledger: measured.ledger,
             stages: Vec::new(),
             in_time: Vec::new(),
+            baked: Vec::new(),
             threads: rayon::current_num_threads(),
             seconds: 0.0,
         }

@@ -3,6 +3,7 @@
 //! Used by the command line and the application alike, on whatever thread they like. It prints nothing and reads no
 //! arguments.
 
+mod bake;
 mod estimate;
 mod export;
 pub mod film;
@@ -15,6 +16,7 @@ mod report;
 mod series;
 mod sheet;
 
+pub use bake::{BAKE_PER_S, Inspected, inspect_recording, is_recording};
 pub use estimate::{Estimate, estimate};
 pub use export::{ExportRequest, Exported, export};
 pub use folder::Existing;
@@ -28,6 +30,7 @@ pub use sheet::{MOST as SHEET_MOST, SheetRequest, sheet};
 use std::path::{Path, PathBuf};
 
 use crate::{
+    bake::BakeError,
     export::ExportError,
     recipe::RecipeError,
     relief::ReliefError,
@@ -93,6 +96,9 @@ pub enum JobError {
     /// The map could not be drawn.
     #[error(transparent)]
     Relief(#[from] ReliefError),
+    /// A recording could not be written or read.
+    #[error(transparent)]
+    Bake(#[from] BakeError),
     /// A file could not be written.
     #[error("{path}: {}", said(.cause))]
     Disk {
@@ -128,6 +134,7 @@ impl JobError {
             JobError::Timeline(TimelineError::Checkpoint(error)) => matches!(error, CheckpointError::Foreign { .. }),
             JobError::Export(ExportError::FilmRequest(_)) => true,
             JobError::Store(error) => matches!(error, StoreError::Absent(_)),
+            JobError::Bake(error) => matches!(error, BakeError::Foreign { .. } | BakeError::Outside { .. }),
             _ => false,
         }
     }

@@ -33,6 +33,8 @@ pub struct Picture {
     pub view: String,
     /// Plate borders and motions over it.
     pub overlay: bool,
+    /// Smoke over the relief, where a vent erupts.
+    pub smoke: bool,
 }
 
 /// Reads a world from its folder, or from the store in it.
@@ -56,7 +58,12 @@ pub fn render(picture: &Picture) -> Result<PathBuf, JobError> {
         let what = format!("this world has no layer '{}' (it has: {})", layer.name(), there.join(", "));
         return Err(JobError::Refused(format!("--view {}: {what}", picture.view)));
     }
-    let options = relief::Options { overlay: picture.overlay, title: Some(provenance.name), ..Default::default() };
+    let options = relief::Options {
+        overlay: picture.overlay,
+        smoke: picture.smoke,
+        title: Some(provenance.name),
+        ..Default::default()
+    };
     write_picture(&relief::map(&world, &view, &options)?, &picture.file)?;
     Ok(picture.file.clone())
 }

@@ -147,7 +147,6 @@ impl Cover {
         };
         self.lava.as_ref().map_or(land, |lava| lava.over(index, land))
     }
-    }
 }
 
 /// Share of the snow that ground of a gradient holds.

@@ -8,6 +8,7 @@ use tiny_skia::{
 use super::{
     palette::{Encoder, Rgb},
     rivers::Waters,
+    smoke::Smoke,
 };
 use crate::grid::{Grid, for_each_row};
 
@@ -115,6 +116,12 @@ impl Canvas {
     pub fn lay(&mut self, waters: &Waters) {
         let width = self.width();
         for_each_row(self.pixmap.data_mut(), width * 4, |y, row| waters.lay::<4>(y, 1.0, row));
+    }
+
+    /// Lays smoke over the sheet.
+    pub fn cover(&mut self, smoke: &Smoke) {
+        let width = self.width();
+        for_each_row(self.pixmap.data_mut(), width * 4, |y, row| smoke.lay::<4>(y, row));
     }
 
     /// Lays a colour over one pixel by a coverage; nothing beyond the rim.

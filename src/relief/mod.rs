@@ -22,6 +22,7 @@ mod palette;
 mod rivers;
 mod shade;
 mod sheet;
+mod smoke;
 mod swatches;
 mod text;
 mod tint;
@@ -55,6 +56,8 @@ pub struct Options {
     pub max_px: usize,
     /// A smaller world is drawn that many whole times larger that its longer side reaches this, pixels.
     pub min_px: usize,
+    /// Smoke over the relief, where a vent erupts now.
+    pub smoke: bool,
     /// The line above the map.
     pub title: Option<String>,
     /// Vertical exaggeration of the light; chosen from the land's own slopes where absent. A film fixes it.
@@ -63,7 +66,15 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { overlay: false, furniture: true, max_px: 2048, min_px: 512, title: None, exaggeration: None }
+        Self {
+            overlay: false,
+            furniture: true,
+            max_px: 2048,
+            min_px: 512,
+            smoke: false,
+            title: None,
+            exaggeration: None,
+        }
     }
 }
 
@@ -130,6 +141,12 @@ pub fn map(world: &World, view: &View, options: &Options) -> Result<RgbImage, Re
         && let Some(waters) = rivers::Waters::of(world, &frame.grid)
     {
         canvas.lay(&waters);
+    }
+    if options.smoke
+        && *view == View::Relief
+        && let Some(smoke) = smoke::Smoke::of(world, &frame.grid)
+    {
+        canvas.cover(&smoke);
     }
     let mut symbols = Vec::new();
     if options.overlay {

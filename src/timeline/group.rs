@@ -4,6 +4,7 @@
 use std::{sync::atomic::AtomicBool, time::Instant};
 
 use crate::{
+    bake::Tape,
     process::{Context, Process, ProcessError, State, Step},
     recipe::Stage,
     world::{Layer, Matter, World},
@@ -19,6 +20,7 @@ pub struct Group<'a> {
     members: Vec<Member<'a>>,
     seed: u64,
     cancel: &'a AtomicBool,
+    tape: Option<&'a dyn Tape>,
 }
 
 struct Member<'a> {
@@ -43,7 +45,12 @@ impl<'a> Group<'a> {
             Ok(Member { stage, process, seconds: 0.0 })
         };
         let members = std::iter::once(stage).chain(&stage.coupled).map(member).collect::<Result<_, _>>()?;
-        Ok(Self { members, seed, cancel })
+        Ok(Self { members, seed, cancel, tape: None })
+    }
+
+    /// The same with the leader's particles recorded.
+    pub fn recording(self, tape: Option<&'a dyn Tape>) -> Self {
+        Self { tape, ..self }
     }
 
     /// One step of all.
@@ -136,8 +143,8 @@ impl<'a> Group<'a> {
     }
 
     fn context(&self, at: usize) -> Context<'a> {
-        let cancel = if at == 0 { self.cancel } else { &NEVER };
-        Context::new(self.seed, &self.members[at].stage.key, cancel)
+        let (cancel, tape) = if at == 0 { (self.cancel, self.tape) } else { (&NEVER, None) };
+        Context::new(self.seed, &self.members[at].stage.key, cancel).recording(tape)
     }
 
     fn failure(&self, at: usize, why: ProcessError) -> Failure<'a> {

@@ -10,7 +10,7 @@ mod run;
 pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints, EVERY};
 pub use run::{Timeline, TimelineError};
 
-use crate::world::World;
+use crate::{bake::Tape, world::World};
 
 /// Where a run is.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +69,15 @@ pub trait Sink {
 
     /// Takes a frame; an error, said in one line, stops the run.
     fn take(&mut self, world: &World, moment: &Moment) -> Result<(), String>;
+}
+
+/// What records the particles of stages while they step.
+pub trait Recorder: Sync {
+    /// The tape of one of the running stages, counted from 0, if it is recorded.
+    fn tape(&self, stage: usize) -> Option<&dyn Tape>;
+
+    /// A step of a recorded stage is done, and its frames have been taken. A checkpoint may be kept after this.
+    fn step(&self, moment: &Moment) -> Result<(), String>;
 }
 
 /// What a finished stage cost.

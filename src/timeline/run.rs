@@ -9,7 +9,7 @@ use crate::{
 };
 
 use super::{
-    Interest, Moment, Sink, StageRecord,
+    Interest, Moment, Recorder, Sink, StageRecord,
     checkpoint::{Checkpoint, CheckpointError, Checkpoints, Position},
     group::{Failure, Group},
 };
@@ -65,13 +65,14 @@ pub struct Timeline<'a> {
     until: Option<usize>,
     checkpoints: Option<&'a mut Checkpoints>,
     start: Option<Checkpoint>,
+    recorder: Option<&'a dyn Recorder>,
     records: Vec<StageRecord>,
 }
 
 impl<'a> Timeline<'a> {
     /// A run of the whole plan; `cancel` stops it between two steps.
     pub fn new(plan: &'a Plan, cancel: &'a AtomicBool) -> Self {
-        Self { plan, cancel, until: None, checkpoints: None, start: None, records: Vec::new() }
+        Self { plan, cancel, until: None, checkpoints: None, start: None, recorder: None, records: Vec::new() }
     }
 
     /// Ends after the stage of that place in the plan.
@@ -89,6 +90,12 @@ impl<'a> Timeline<'a> {
     /// Goes on where a stopped run of the same plan was.
     pub fn from(mut self, checkpoint: Option<Checkpoint>) -> Self {
         self.start = checkpoint;
+        self
+    }
+
+    /// Has particles recorded.
+    pub fn recording(mut self, recorder: Option<&'a dyn Recorder>) -> Self {
+        self.recorder = recorder;
         self
     }
 
@@ -137,7 +144,9 @@ impl<'a> Timeline<'a> {
         watch: &mut Watch,
     ) -> Result<Vec<StageRecord>, TimelineError> {
         let (started, before) = (Instant::now(), at.seconds);
-        let mut group = Group::new(stage, self.plan.world.seed, self.cancel).map_err(|e| stopped(at.step, e))?;
+        let recorder = self.recorder.and_then(|recorder| Some((recorder, recorder.tape(watch.index)?)));
+        let group = Group::new(stage, self.plan.world.seed, self.cancel).map_err(|e| stopped(at.step, e))?;
+        let mut group = group.recording(recorder.map(|(_, tape)| tape));
         match state {
             Some(state) => group.restore(state).map_err(|e| stopped(at.step, e))?,
             None => group.open(world),
@@ -157,6 +166,9 @@ impl<'a> Timeline<'a> {
             let all = (world.grid != grid).then_some(Layer::ALL);
             find_non_finite(stage, at.step, group.writes().chain(all.into_iter().flatten().copied()), world)?;
             watch.show(&mut group, world, &at)?;
+            if let Some((recorder, _)) = recorder {
+                recorder.step(&watch.moment(at.step, done, world)).map_err(TimelineError::Sink)?;
+            }
             if done < 1.0 {
                 watch.tell(at.step, done, world);
                 if self.checkpoints.as_ref().is_some_and(|checkpoints| checkpoints.due()) {

@@ -84,16 +84,21 @@ fn on(grid: &Grid, at_m: [f64; 2]) -> bool {
     (0..2).all(|axis| (0.0..=extent[axis]).contains(&at_m[axis]))
 }
 
+/// The middle of the highest cell; of several, the nearest to the middle of the map.
 fn summit_m(world: &World) -> [f64; 2] {
-    let height = world.height();
-    let mut top = 0;
-    for (i, &z) in height.data.iter().enumerate() {
-        if z > height.data[top] {
-            top = i;
-        }
-    }
-    let (x, y) = world.grid.cell_of(top);
-    world.grid.center_m(x, y)
+    let (height, grid) = (world.height(), world.grid);
+    let extent = grid.extent_m();
+    let place = |i: usize| {
+        let (x, y) = grid.cell_of(i);
+        grid.center_m(x, y)
+    };
+    let off_m = |i: usize| {
+        let at = place(i);
+        libm::hypot(at[0] - 0.5 * extent[0], at[1] - 0.5 * extent[1])
+    };
+    let top = height.data.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let tops = (0..height.data.len()).filter(|&i| height.data[i] == top);
+    tops.min_by(|&a, &b| off_m(a).total_cmp(&off_m(b))).map_or([0.5 * extent[0], 0.5 * extent[1]], place)
 }
 
 impl Outlet {
@@ -145,6 +150,9 @@ mod tests {
     fn the_youngest_vents_erupt_else_the_summit() {
         let mut world = hill();
         assert_eq!(outlets(&[], &world, 3.0).unwrap(), [Outlet::disc([250.0, 150.0], 3.0)]);
+        // Level ground has its summit in the middle.
+        let level = World::new(Grid::new(5, 5, 500.0, Edges::Open), 0.0);
+        assert_eq!(summit_m(&level), [250.0, 250.0]);
         let vent = |x, radius_m, age_yr| Vent { at_m: [x, 1.0], radius_m, age_yr };
         world.set_vents(&[vent(10.0, 5.0, 3.0), vent(20.0, 6.0, 2.0), vent(30.0, 7.0, 2.0), vent(900.0, 8.0, 0.0)]);
         let young = [(20.0, 6.0), (30.0, 7.0)].map(|(x, r)| Outlet { share: 0.5, ..Outlet::disc([x, 1.0], r) });

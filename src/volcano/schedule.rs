@@ -144,6 +144,22 @@ impl Schedule {
         self.spans.iter().map(move |span| ((span.to_s.min(end_s) - span.from_s).max(0.0), span.m3_per_s))
     }
 
+    /// The times up to a moment in which anything comes out without a pause, from and to, s.
+    pub fn spans(&self, until_s: f64) -> Vec<[f64; 2]> {
+        let (mut spans, mut now) = (Vec::<[f64; 2]>::new(), 0.0);
+        while now < until_s {
+            let next = self.next_change(now).map_or(until_s, |next| next.min(until_s));
+            if self.particles(now, next, 1.0) > 0.0 {
+                match spans.last_mut() {
+                    Some(last) if last[1] == now => last[1] = next,
+                    _ => spans.push([now, next]),
+                }
+            }
+            now = next;
+        }
+        spans
+    }
+
     /// The next moment after `now_s` at which a rate begins or ends; `None` if that never happens.
     pub fn next_change(&self, now_s: f64) -> Option<f64> {
         let ends = self.spans.iter().flat_map(|span| [span.from_s, span.to_s]);
@@ -169,6 +185,15 @@ mod tests {
         let step = |k: i32| schedule.particles(0.07 * k as f64, 0.07 * (k + 1) as f64, 1.0);
         assert!(((0..300).map(step).sum::<f64>() - 11_000.0).abs() < 1e-6);
         assert_eq!([0.0, 3.0, 20.0].map(|now| schedule.next_change(now)), [Some(2.0), Some(12.0), None]);
+    }
+
+    #[test]
+    fn spans_are_where_anything_comes_out() {
+        let keys = [Key::particles(2.0, 3.0, 1.0), Key::particles(5.0, 1.0, 4.0), Key::particles(9.0, 5.0, 1.0)];
+        let schedule = Schedule::new(&[&keys[..], &[Key::particles(6.0, 2.0, 0.0)]].concat()).unwrap();
+        assert_eq!(schedule.spans(12.0), [[2.0, 6.0], [9.0, 12.0]]);
+        assert_eq!(schedule.spans(2.0), [[0.0; 2]; 0]);
+        assert_eq!(Schedule::default().spans(5.0), [[0.0; 2]; 0]);
     }
 
     #[test]

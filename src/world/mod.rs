@@ -7,6 +7,7 @@ mod forcing;
 mod ledger;
 mod mask;
 mod picture;
+mod plumes;
 pub mod store;
 mod table;
 mod vents;
@@ -16,6 +17,7 @@ pub use forcing::Inflow;
 pub use ledger::{Account, Ledger, Matter};
 pub use mask::{Mask, MaskError};
 pub use picture::{PictureError, open_picture, sample};
+pub use plumes::{Plume, Puff};
 pub use table::{Column, Table, Values};
 pub use vents::Vent;
 

@@ -139,7 +139,8 @@ fn the_last_picture_is_the_finished_world() {
         assert_eq!(std::fs::read_dir(place.path(folder)).unwrap().count(), PICTURES);
         let (world, _) = store::read(&place.path(world).join("world.zarr")).unwrap();
         let view = if view == "relief" { View::Relief } else { View::Layer(upthrust::world::Layer::Slope) };
-        let options = Options { size: [264, 136], view, range_m: [-9000.0, 9000.0], climate: false, title: None };
+        let options =
+            Options { size: [264, 136], view, range_m: [-9000.0, 9000.0], climate: false, smoke: true, title: None };
         let mut animation = Animation::new(world.grid, &options);
         let shot = animation.shot(&world).unwrap();
         let mut want = vec![0; animation.bytes()];
@@ -338,4 +339,43 @@ fn pictures_are_png_or_jpeg_by_their_ending() {
         assert_eq!(image::guess_format(&bytes).unwrap(), format, "{name}");
         assert!(image::load_from_memory(&bytes).is_ok());
     }
+}
+
+#[test]
+fn smoke_stands_over_vents_that_erupt_unless_it_is_left_out() {
+    let place = Place::new();
+    let ground = "name = \"Fire\"\n[world]\nsize = 40\nextent_km = 0.05\n[[stage]]\nkind = \"rmp_peak\"\nheight_m = 12.0\n\
+        half_width_km = 0.015\nfilm_seconds = 0.2\n[[stage]]\nkind = \"lava\"\nduration_min = 0.2\nspacing_m = 0.8\n\
+        film_seconds = 1.0\nschedule = [{ start_time = 6, duration = 5, particles_per_second = 20 }]\n";
+    place.write("fire.toml", ground);
+    let film = |name: &str, rest: &[&str]| -> Vec<image::RgbImage> {
+        let (out, file) = (format!("w-{name}"), format!("{name}/%02d.png"));
+        let fixed = ["grow", "fire.toml", "--out", &out, "--video", &file, "--video-size", "160x90", "--fps", "10"];
+        let said = place.run(&[&fixed[..], rest].concat());
+        assert_eq!(said.code, 0, "{}", said.err);
+        (1..=12).map(|k| image::open(place.path(&format!("{name}/{k:02}.png"))).unwrap().into_rgb8()).collect()
+    };
+    let (with, without) = (film("with", &["--keep-timeline"]), film("without", &["--no-smoke"]));
+    // Two pictures of the peak and ten of twelve seconds: lava is due from the sixth to the eleventh, and smoke stays a while.
+    let smokes: Vec<bool> = with.iter().zip(&without).map(|(a, b)| a != b).collect();
+    assert!(smokes[..7].iter().all(|smokes| !smokes) && smokes[8..].iter().all(|smokes| *smokes), "{smokes:?}");
+    // What was kept shows the same smoke again.
+    let again = place.run(&["film", "w-with", "again/%02d.png", "--video-size", "160x90", "--fps", "10"]);
+    assert_eq!(again.code, 0, "{}", again.err);
+    for (k, with) in (1..=12).zip(&with) {
+        let own = image::open(place.path(&format!("again/{k:02}.png"))).unwrap().into_rgb8();
+        assert!(mean_difference(&own, with) < 0.5, "picture {k}: a timeline keeps heights, not what they are made of");
+    }
+    // An eruption column stands when its ash has just fallen.
+    place.write(
+        "ash.toml",
+        "name = \"Ash\"\n[world]\nsize = 64\n[[stage]]\nkind = \"fbm\"\n[[stage]]\nkind = \"ash\"\n",
+    );
+    assert_eq!(place.run(&["grow", "ash.toml", "--out", "ash"]).code, 0);
+    let picture = |file: &str, rest: &[&str]| {
+        assert_eq!(place.run(&[&["render", "ash", file], rest].concat()).code, 0);
+        image::open(place.path(file)).unwrap().into_rgb8()
+    };
+    assert!(picture("a.png", &["--smoke"]) != picture("b.png", &[]));
+    assert!(picture("c.png", &["--smoke", "--view", "slope"]) == picture("d.png", &["--view", "slope"]));
 }

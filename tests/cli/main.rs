@@ -1,6 +1,7 @@
 //! Runs the real binary: what a user types, what stands on the screen, which files there are.
 
 mod bad_input;
+mod bake;
 mod export;
 mod film;
 mod grow;

@@ -1,6 +1,7 @@
 //! The rain as a family of erosion: its steps, its state, and what it shows.
 
 use crate::{
+    bake::{Frame, Tape},
     grid::{Edges, Field, Grid, sum_f64},
     noise::Key,
     sph::Swarm,
@@ -17,6 +18,8 @@ use super::{
 
 /// How far a box of water is off a lattice, in spacings.
 const JITTER: f64 = 0.1;
+/// Names and units of what is recorded.
+pub(super) const COLUMNS: [[&str; 2]; 5] = [["x", "m"], ["y", "m"], ["z", "m"], ["age", "s"], ["load", "m3"]];
 /// Names the saved layout.
 const MARK: u64 = 0x5250_0001;
 /// The field of what waits beside the bed.
@@ -178,7 +181,16 @@ fn cell(grid: &Grid, x: i64, y: i64) -> Option<usize> {
 
 impl Family for RainParticles {
     fn advance(&mut self, bed: &mut Bed, part: Part) -> Moved {
+        // Without a tape there is none that could be full.
+        self.advance_on(bed, part, None).unwrap_or_default()
+    }
+
+    fn advance_on(&mut self, bed: &mut Bed, part: Part, tape: Option<&dyn Tape>) -> Result<Moved, String> {
         let [from, to] = part.of(self.params.duration_s());
+        let take =
+            |frames: Vec<Frame>| frames.into_iter().try_for_each(|frame| tape.map_or(Ok(()), |tape| tape.take(frame)));
+        self.water.glimpses.look(tape.map_or(0.0, |tape| tape.per_s()), from);
+        take(self.water.glimpses.idle(from, COLUMNS.len()))?;
         let mut left = to - from;
         let mut ground = Ground::new(bed);
         self.datum_m = ground.datum_m;
@@ -196,11 +208,14 @@ impl Family for RainParticles {
                 moved.water_in_m3 += born as f64 * volume;
                 self.water.sort();
             }
-            let dt = if self.water.swarm.is_empty() {
+            let now = to - left;
+            let still = self.water.swarm.is_empty();
+            let dt = if still {
                 // Until there is enough for a particle.
                 let wait = if rate > 0.0 { (volume - self.rain.owed_m3).max(0.0) / rate } else { left };
                 wait.max(idle).min(left)
             } else {
+                self.water.look(now);
                 let dt = self.water.block(&ground, left);
                 self.exchange.run(&self.params, bed, &mut ground, &mut self.water, dt);
                 for life in &mut self.water.swarm.clock_s {
@@ -209,10 +224,16 @@ impl Family for RainParticles {
                 dt
             };
             self.rain.owed_m3 += rate * dt;
+            let next = if dt >= left { to } else { now + dt };
+            take(if still {
+                self.water.glimpses.idle(next, COLUMNS.len())
+            } else {
+                self.water.develop(dt, self.datum_m)?
+            })?;
             // The last sub-step ends where the step does.
             left -= dt;
         }
-        moved
+        Ok(moved)
     }
 
     fn carried_m3(&self) -> f64 {

@@ -1,7 +1,8 @@
 //! The stage `rain_particles`.
 
-use super::{RainParticles, RainParticlesParams};
+use super::{RainParticles, RainParticlesParams, family::COLUMNS};
 use crate::{
+    bake::{Column, Subject},
     erosion::{
         bed::Bed,
         stage::{FamilyParams, Lock, Stage, clocks, peak},
@@ -45,6 +46,12 @@ impl FamilyParams for RainParticlesParams {
     fn remarks(&self, grid: &Grid) -> Vec<String> {
         let clocks = clocks(self.duration_min / 60.0, self.duration_yr(), self.morphological_factor);
         self.warning(grid).into_iter().chain([clocks]).collect()
+    }
+
+    fn subject(&self, grid: &Grid) -> Option<Subject> {
+        let columns = COLUMNS.iter().map(|[name, unit]| Column::new(name, unit)).collect();
+        let spacing_m = self.spacing(grid);
+        Some(Subject { columns, duration_s: self.duration_s(), volume_m3: spacing_m * spacing_m * spacing_m })
     }
 
     fn solver(&self, bed: &Bed, _world: &World, key: Key) -> Result<RainParticles, ProcessError> {

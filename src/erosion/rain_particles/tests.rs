@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use super::super::bed::{Bed, Family, Moved, Part};
 use super::{RainParticles, RainParticlesParams, params::GRAVITY};
 use crate::{
+    bake::{Frame, Tape, due_s},
     grid::{Edges, Grid},
     noise::{Fbm, Key},
 };
@@ -377,5 +378,51 @@ proptest! {
             let land = |bed: &Bed| bed.height(i) >= bed.sea_m;
             prop_assert!(!locked || land(&start) == land(&bed), "{} became {}", start.height(i), bed.height(i));
         }
+    }
+}
+
+/// Keeps all frames, ten a second.
+#[derive(Default)]
+struct Roll(std::sync::Mutex<Vec<Frame>>);
+
+impl Tape for Roll {
+    fn per_s(&self) -> f64 {
+        10.0
+    }
+
+    fn take(&self, frame: Frame) -> Result<(), String> {
+        self.0.lock().unwrap().push(frame);
+        Ok(())
+    }
+}
+
+#[test]
+fn frames_of_rain_are_the_state_at_their_time_and_change_nothing() {
+    let make = || (hill(Edges::Open), RainParticles::new(&params(), hill(Edges::Open).grid, Key::new(1)).unwrap());
+    let ((mut bed, mut rain), (mut plain_bed, mut plain), roll) = (make(), make(), Roll::default());
+    let mut states = Vec::new();
+    for step in 0..6 {
+        rain.advance_on(&mut bed, Part { step, steps: 6 }, Some(&roll)).unwrap();
+        run(&mut plain, &mut plain_bed, step, step + 1, 6);
+        let seen = rain.seen();
+        let mut order: Vec<usize> = (0..seen.born.len()).collect();
+        order.sort_by_key(|&i| seen.born[i]);
+        let wide = |values: &[f32], from: f32| -> Vec<f64> {
+            order.iter().map(|&i| f64::from(values[i]) + f64::from(from)).collect()
+        };
+        let age = order.iter().map(|&i| (8.0 - f64::from(seen.life_s[i])).max(0.0)).collect();
+        let load = order.iter().map(|&i| seen.load_m3[i]).collect();
+        let columns = vec![wide(seen.x_m, 0.0), wide(seen.y_m, 0.0), wide(seen.z_m, seen.datum_m), age, load];
+        states.push((order.iter().map(|&i| seen.born[i] as u32).collect::<Vec<_>>(), columns));
+    }
+    assert_eq!((bed.change, rain.save()), (plain_bed.change, plain.save()), "being looked at changes nothing");
+    let frames = roll.0.into_inner().unwrap();
+    // Eighteen seconds, a step every three.
+    assert_eq!(frames.len(), 181);
+    assert!(frames.iter().enumerate().all(|(k, frame)| frame.time_s == due_s(k as u64, 10.0)));
+    for (step, (id, columns)) in states.iter().enumerate() {
+        let frame = &frames[30 * (step + 1)];
+        assert_eq!((frame.id.len() > 10, &frame.id), (true, id), "step {step}");
+        assert!(&frame.columns == columns, "step {step}");
     }
 }

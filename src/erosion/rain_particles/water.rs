@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::{
+    bake::{Frame, Glimpses},
     grid::{Edges, Grid},
     sph::{Cloud, Forces, Kernel, Liquid, RUN, Reader, Scale, Swarm, Touch, WendlandC2, Work, widest},
 };
@@ -32,6 +33,8 @@ pub(super) struct Water {
     pub(super) work: [u64; 2],
     /// The particles: their clocks are what is left of their lives, their loads the rock that they carry, in m³ of bed.
     pub(super) swarm: Swarm,
+    /// What a recording sees of it.
+    pub(super) glimpses: Glimpses,
     /// Distance from the ground, m.
     pub(super) gap: Vec<f32>,
     normal: [Vec<f32>; 3],
@@ -81,6 +84,7 @@ impl Water {
             sound: 0.0,
             work: [0; 2],
             swarm: Swarm::new(&grid, scale.support_m()),
+            glimpses: Glimpses::default(),
             gap: Vec::new(),
             normal: Default::default(),
             beyond: Vec::new(),
@@ -102,6 +106,28 @@ impl Water {
     #[cfg(test)]
     pub(super) fn density(&self) -> &[f32] {
         &self.forces.density
+    }
+
+    /// What a recording has besides the place: ages, s, and loads, m³.
+    fn age_and_load(&self) -> Vec<Vec<f64>> {
+        let lifespan_s = self.params.lifespan_s;
+        let ages = self.swarm.clock_s.iter().map(|&left| (lifespan_s - f64::from(left)).max(0.0)).collect();
+        vec![ages, self.swarm.load.clone()]
+    }
+
+    /// A block begins now, s after the stage did; somebody may look.
+    pub(super) fn look(&mut self, now_s: f64) {
+        let mut glimpses = std::mem::take(&mut self.glimpses);
+        glimpses.open(now_s, || self.age_and_load());
+        self.glimpses = glimpses;
+    }
+
+    /// The frames that were due in a block that lasted so long.
+    pub(super) fn develop(&mut self, lasted_s: f64, datum_m: f32) -> Result<Vec<Frame>, String> {
+        let mut glimpses = std::mem::take(&mut self.glimpses);
+        let frames = glimpses.develop((lasted_s, datum_m), &self.swarm.born, || self.age_and_load());
+        self.glimpses = glimpses;
+        frames
     }
 
     fn radius(&self) -> f32 {
@@ -153,6 +179,8 @@ impl Water {
             );
             most = self.walk(ground, dt as f32, top as f32);
             done = if last { left_s } else { done + dt };
+            let Cloud { x, y, z, vx, vy, vz } = &self.swarm.cloud;
+            self.glimpses.pass(done, [x, y, z], [vx, vy, vz]);
             if last || (most.way2 as f64).sqrt() > half {
                 break;
             }

@@ -2,13 +2,14 @@
 //!
 //! The order of things: [`order`] checks what was asked without opening the world, [`place`] finds where the samples lie,
 //! [`names`] says which files there will be, [`draw`] makes the rasters, and [`sidecar`] says in JSON what the files
-//! cannot say themselves. Meshes and vector maps go other ways, [`mesh`] and [`vector`].
+//! cannot say themselves. Meshes, vector maps and points go other ways, [`mesh`], [`vector`] and [`points`].
 
 mod draw;
 mod mesh;
 mod names;
 mod order;
 mod place;
+mod points;
 mod sidecar;
 mod vector;
 
@@ -57,6 +58,8 @@ pub struct ExportRequest {
     pub green: Option<Green>,
     /// Metres between the contours of a vector map; a round number that suits the land if absent.
     pub contours_m: Option<f64>,
+    /// The moment of a recording of particles, s.
+    pub at_s: Option<f64>,
     /// Replace files that are there.
     pub force: bool,
 }
@@ -94,6 +97,9 @@ pub struct Exported {
 
 /// Writes the files; nothing is left of an export that fails.
 pub fn export(request: &ExportRequest) -> Result<Exported, JobError> {
+    if let Some(format) = points::asked(request)? {
+        return points::export(request, format);
+    }
     if let Some(format) = mesh::format(&request.file) {
         return mesh::export(request, format);
     }

@@ -13,7 +13,7 @@ use crate::{
     timeline::{Interest, Moment, TimelineError},
     world::{
         World,
-        store::{Provenance, Recording},
+        store::{Frame, Provenance, Recording},
     },
 };
 
@@ -42,12 +42,25 @@ pub fn replay(
             Moment { stage: frame.stage, stages, label, step: frame.step, done: frame.done, time_yr: frame.time_yr };
         if film.wants(&moment) > Interest::None {
             // The last frame is the finished world, of which the store has more.
-            let kept = if i == last { None } else { Some(recording.world(i)?) };
+            let mut kept = if i == last { None } else { Some(recording.world(i)?) };
+            if let Some(kept) = &mut kept {
+                smoke(&world, recording.frames(), i, kept);
+            }
             film.frame(kept.as_ref().unwrap_or(&world), &moment)?;
         }
         tell(Event::Step(&moment));
     }
     film.finish()
+}
+
+/// Gives a kept moment the smoke that the finished world remembers. What ends with the moment belongs to the last stage of it.
+fn smoke(world: &World, frames: &[Frame], i: usize, kept: &mut World) {
+    let time_yr = frames[i].time_yr;
+    let last = frames.get(i + 1).is_none_or(|next| next.time_yr > time_yr);
+    if kept.grid == world.grid {
+        let there: Vec<_> = world.plumes().into_iter().filter(|plume| last || plume.end_yr > time_yr).collect();
+        kept.add_plumes(&there);
+    }
 }
 
 /// The film that was asked for, as far as the kept layers allow it.

@@ -31,6 +31,8 @@ pub struct FilmRequest {
     pub view: String,
     /// Whether the time is shown.
     pub clock: bool,
+    /// Whether smoke is drawn over the relief where vents erupt.
+    pub smoke: bool,
     /// What ffmpeg is told besides.
     pub ffmpeg_args: Vec<String>,
     /// Whether it takes the place of a film that is there.
@@ -87,7 +89,14 @@ impl FilmPlan {
         }
         let view = picture::view(&request.view)?;
         let ffmpeg_args = request.ffmpeg_args.clone();
-        let animation = film::Options { size, view, range_m: EARTH_M, climate: false, title: Some(title.to_owned()) };
+        let animation = film::Options {
+            size,
+            view,
+            range_m: EARTH_M,
+            climate: false,
+            smoke: request.smoke,
+            title: Some(title.to_owned()),
+        };
         let planned = Self {
             in_folder: request.file.is_none(),
             encoding: Settings { format, size, rate, hold_s: HOLD_S, ffmpeg_args },

@@ -46,6 +46,8 @@ pub struct Options {
     pub range_m: [f64; 2],
     /// Whether there will be weather, by which the relief is then coloured.
     pub climate: bool,
+    /// Whether smoke is drawn over the relief.
+    pub smoke: bool,
     /// The film's name.
     pub title: Option<String>,
 }
@@ -65,6 +67,7 @@ pub struct Animation {
     map: Grid,
     size: [usize; 2],
     view: View,
+    smoke: bool,
     resampler: Resampler,
     scene: Scene,
     colours: Option<Colours>,
@@ -99,6 +102,7 @@ impl Animation {
             map,
             size: options.size,
             view: options.view,
+            smoke: options.smoke && options.view == View::Relief,
             resampler: Resampler::new(grid, map),
             tints,
             scene,

@@ -8,11 +8,12 @@ use super::{
         coast,
         layers::SHADING,
         palette::{Encoder, Rgb, each, hex, mix},
+        smoke::Smoke,
         tint::{Place, lit, lit_part},
     },
     Animation, Shot,
 };
-use crate::grid::for_each_row;
+use crate::grid::{Grid, for_each_row};
 
 /// Values between two shots, row by row.
 struct Between<'a> {
@@ -102,6 +103,7 @@ impl Animation {
             (Some(waters), None) => Some((waters, 1.0 - share)),
             (None, waters) => waters.as_ref().map(|waters| (waters, share)),
         };
+        let smoke = if self.smoke { smoke([from, to], share, &map) } else { None };
         let this = &*self;
         let room = || {
             let row = || vec![0.0; map.width];
@@ -123,6 +125,9 @@ impl Animation {
             }
             if let Some((waters, share)) = waters {
                 waters.lay::<3>(y, share, out);
+            }
+            if let Some(smoke) = &smoke {
+                smoke.lay::<3>(y, out);
             }
         });
     }
@@ -179,6 +184,14 @@ impl Animation {
             pixel.copy_from_slice(&self.encoder.bytes(lit));
         }
     }
+}
+
+/// The smoke between two shots. Where no time passes between them, plumes that are new come up with the picture.
+fn smoke([from, to]: [&Shot; 2], share: f32, map: &Grid) -> Option<Smoke> {
+    let time_yr = from.time_yr + (to.time_yr - from.time_yr) * f64::from(share);
+    let fresh = if to.time_yr > from.time_yr { 1.0 } else { f64::from(share.min(1.0)) };
+    let strength = |plume| if from.plumes.contains(plume) { 1.0 } else { fresh };
+    Smoke::at(to.plumes.iter().map(|plume| (plume, strength(plume))), time_yr, map)
 }
 
 /// Where the bytes of one part of a row's colours stand, red, green or blue, under light.

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     grid::{Field, Grid},
-    world::{Kind, Layer, World},
+    world::{Kind, Layer, Plume, World},
 };
 
 /// A moment of a world at the picture's raster.
@@ -24,6 +24,8 @@ pub struct Shot {
     pub(super) ground: Option<[Vec<f32>; 3]>,
     /// Rivers and lakes, where the relief is shown and there are any.
     pub(super) waters: Option<Waters>,
+    /// Smoke that there is or was.
+    pub(super) plumes: Vec<Plume>,
     /// Height of the sea, m.
     pub(super) sea_m: f32,
     /// Years since the recipe began.
@@ -57,7 +59,8 @@ impl Shot {
         let ground = cover.map(|cover| colours(&cover, &height, plain));
         let has_land = height.data.iter().any(|&h| h > sea_m);
         let tone = shade(&height, |h| h > sea_m || !has_land, None).data;
-        Ok(Self { height, tone, values, ground, waters, sea_m, time_yr: world.time_yr })
+        let plumes = world.plumes();
+        Ok(Self { height, tone, values, ground, waters, plumes, sea_m, time_yr: world.time_yr })
     }
 
     /// The flat ground before the first stage.
@@ -68,6 +71,7 @@ impl Shot {
             values: self.values.clone(),
             ground: None,
             waters: None,
+            plumes: Vec::new(),
             sea_m: 0.0,
             time_yr: 0.0,
         }

@@ -1,4 +1,4 @@
-//! Ash: what an eruption column lets fall downwind, and the puffs that a picture of the column is made of.
+//! Ash: what an eruption column lets fall downwind, and the smoke of the column itself.
 //!
 //! Advection and diffusion of grains that fall, after Suzuki (in Arc Volcanism, 1983, 95–113): the column lets grains go at
 //! every height, most of them high up, `p(z) ∝ (1 − z/H)·exp(A·(z/H − 1))`; a grain falls at its terminal velocity, drifts
@@ -7,8 +7,7 @@
 
 mod column;
 mod params;
-mod plume;
+mod smoke;
 mod stage;
 
 pub use params::AshParams;
-pub use plume::{Plume, Puff};

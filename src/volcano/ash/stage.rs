@@ -5,7 +5,7 @@ use crate::{
     grid::{Field, Grid, map_cells, sum_rows},
     process::{Context, Placement, Process, ProcessError, State, Step},
     volcano::outlet::found,
-    world::{Layer, Matter, World},
+    world::{Layer, Matter, Plume, World},
 };
 
 /// Distance from the middle of a Gaussian beyond which nothing falls, in its standard deviations.
@@ -80,6 +80,12 @@ impl Process for Stage {
             Some(at_km) => vec![at_km.map(|km| 1e3 * km)],
             None => found(world, 0.0).iter().map(|outlet| outlet.from_m).collect(),
         };
+        let plumes: Vec<Plume> = columns
+            .iter()
+            .enumerate()
+            .map(|(k, &at_m)| self.params.plume(at_m, columns.len(), world, context.key.with(k as u64)))
+            .collect();
+        world.add_plumes(&plumes);
         let each_m3 = 1e9 * self.params.volume_km3 / columns.len() as f64;
         let mut thick = Field::filled(grid, 0.0f32);
         let mut landed_m3 = 0.0;

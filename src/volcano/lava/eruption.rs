@@ -9,6 +9,7 @@ use super::{
     vents::{APART, Source},
 };
 use crate::{
+    bake::{Frame, Tape},
     grid::{Edges, Field},
     noise::Key,
     sph::Swarm,
@@ -21,6 +22,8 @@ use crate::{
 
 /// How far below the lowest ground a particle is out of the world, m.
 const DEEP_M: f32 = 1e4;
+/// Names and units of what is recorded.
+pub(super) const COLUMNS: [[&str; 2]; 5] = [["x", "m"], ["y", "m"], ["z", "m"], ["temperature", "degC"], ["age", "s"]];
 /// Time between looks at vents where nothing flows, s.
 const IDLE_S: f64 = 0.05;
 
@@ -85,16 +88,26 @@ impl Eruption {
 
     /// Runs from a moment to another, s after the eruption began.
     pub fn run(&mut self, from_s: f64, to_s: f64) -> Result<(), String> {
+        self.run_on(from_s, to_s, None)
+    }
+
+    /// The same, with a tape on which it is recorded: first at the beginning, then on where it was left.
+    pub fn run_on(&mut self, from_s: f64, to_s: f64, tape: Option<&dyn Tape>) -> Result<(), String> {
+        let take =
+            |frames: Vec<Frame>| frames.into_iter().try_for_each(|frame| tape.map_or(Ok(()), |tape| tape.take(frame)));
+        self.flow.glimpses.look(tape.map_or(0.0, |tape| tape.per_s()), from_s);
+        take(self.flow.glimpses.idle(from_s, COLUMNS.len()))?;
         let mut now = from_s;
         while now < to_s {
             self.freeze();
             self.flow.sort();
             self.emit();
             let left = to_s - now;
-            let dt =
-                if self.flow.swarm.is_empty() { self.pause(now, left) } else { self.flow.block(&self.land, left)? };
+            let still = self.flow.swarm.is_empty();
+            let dt = if still { self.pause(now, left) } else { self.block(now, left)? };
             // The last block ends where the run does.
             let next = if dt >= left { to_s } else { now + dt };
+            take(if still { self.flow.glimpses.idle(next, COLUMNS.len()) } else { self.develop(dt)? })?;
             let due = self.schedule.particles(now, next, self.law.volume_m3());
             for source in &mut self.sources {
                 source.owed += due * source.vent.share;
@@ -102,6 +115,23 @@ impl Eruption {
             now = next;
         }
         Ok(())
+    }
+
+    /// A block of steps from a moment on.
+    fn block(&mut self, now: f64, left: f64) -> Result<f64, String> {
+        let mut glimpses = std::mem::take(&mut self.flow.glimpses);
+        glimpses.open(now, || self.flow.heat_and_age());
+        self.flow.glimpses = glimpses;
+        self.flow.block(&self.land, left)
+    }
+
+    /// The frames that were due in a block that lasted so long.
+    fn develop(&mut self, lasted_s: f64) -> Result<Vec<Frame>, String> {
+        let mut glimpses = std::mem::take(&mut self.flow.glimpses);
+        let (flow, datum_m) = (&self.flow, self.land.datum_m);
+        let frames = glimpses.develop((lasted_s, datum_m), &flow.swarm.born, || flow.heat_and_age());
+        self.flow.glimpses = glimpses;
+        frames
     }
 
     /// How long nothing happens where nothing flows.

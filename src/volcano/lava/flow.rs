@@ -11,6 +11,7 @@ use super::{
     stride::{Stride, fresh_speeds, half_ahead},
 };
 use crate::{
+    bake::Glimpses,
     grid::{Edges, Grid},
     sph::{Around, Cloud, CubicSpline, DesbrunGascuel, Kernel, Liquid, RUN, Swarm, WendlandC2, look_around},
     volcano::heat::GRAVITY,
@@ -44,6 +45,8 @@ pub(super) struct Flow {
     /// Heat that has left, J.
     pub(super) lost: Lost,
     pub(super) engine: Engine,
+    /// What a recording sees of it.
+    pub(super) glimpses: Glimpses,
     stiffness: Stiffness,
     pulls: [Vec<[f32; 3]>; 2],
     fresh: Vec<[f32; 3]>,
@@ -66,6 +69,7 @@ impl Flow {
             work: [0; 2],
             lost: Lost::default(),
             engine: Engine::default(),
+            glimpses: Glimpses::default(),
             stiffness: Stiffness::default(),
             pulls: Default::default(),
             fresh: Vec::new(),
@@ -121,6 +125,8 @@ impl Flow {
             most = self.step::<K>(land, &setting, dt as f32);
             self.check(&most, dt)?;
             done = if last { left_s } else { done + dt };
+            let Cloud { x, y, z, vx, vy, vz } = &self.swarm.cloud;
+            self.glimpses.pass(done, [x, y, z], [vx, vy, vz]);
             if last || f64::from(most.way2).sqrt() > half_skin {
                 break;
             }
@@ -338,6 +344,12 @@ impl Flow {
                 self.swarm.load[i] < rock && grounded()
             })
             .collect()
+    }
+
+    /// What a recording has besides the place: temperatures, °C, and ages, s.
+    pub(super) fn heat_and_age(&self) -> Vec<Vec<f64>> {
+        let degc = (0..self.swarm.len()).map(|i| self.temperature(i)).collect();
+        vec![degc, self.swarm.clock_s.iter().map(|&age| f64::from(age)).collect()]
     }
 
     /// Temperature of a particle, °C.

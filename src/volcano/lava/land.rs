@@ -155,9 +155,10 @@ impl Land {
 
     /// What the layer does not hold of the lava that is there, m: what froze since it was told, and what `f32` cannot hold.
     fn waiting_m(&self, lava: Option<&Field<f32>>) -> f64 {
-        let Some(lava) = lava else { return 0.0 };
         let thick = |i: usize| f64::from(self.old[i]) + (self.raised[i] + self.slivers[i]);
-        lava.data.iter().enumerate().map(|(i, &there)| thick(i) - f64::from(there)).sum()
+        // A world without the layer holds none.
+        let there = |i: usize| lava.map_or(0.0, |lava| f64::from(lava.data[i]));
+        (0..self.old.len()).map(|i| thick(i) - there(i)).sum()
     }
 
     /// What has risen since the world was told, a row a cell, in order.

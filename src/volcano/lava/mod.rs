@@ -20,6 +20,7 @@ mod law;
 mod params;
 mod process;
 mod saved;
+mod smoke;
 mod stride;
 #[cfg(test)]
 mod tests;

@@ -168,6 +168,16 @@ pub struct LavaParams {
     #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "kg/m5/s", "x-effect" = "cools from above"))]
     pub document_k_air: f64,
 
+    /// Speed with which smoke leaves the vents, for pictures; 0: none.
+    #[schemars(range(min = 0.0, max = 200.0), extend("x-unit" = "m/s", "x-effect" = "smoke rises higher and spreads wider"))]
+    pub smoke_m_per_s: f64,
+    /// Where the wind comes from that blows it: 0 north, 90 east.
+    #[schemars(range(min = -360.0, max = 360.0), extend("x-unit" = "deg", "x-effect" = "turns the smoke clockwise"))]
+    pub wind_from_deg: f64,
+    /// Speed of that wind 100 m over the vents.
+    #[schemars(range(min = 0.0, max = 150.0), extend("x-unit" = "m/s", "x-effect" = "smoke drifts further off"))]
+    pub wind_m_per_s: f64,
+
     /// What is rock becomes ground.
     #[schemars(extend("x-effect" = "off: lava stays particles until it is over"))]
     pub freeze: bool,
@@ -232,6 +242,9 @@ impl Default for LavaParams {
             document_k_int: 0.1,
             document_k_ground: 1000.0,
             document_k_air: 400.0,
+            smoke_m_per_s: 8.0,
+            wind_from_deg: 270.0,
+            wind_m_per_s: 6.0,
             freeze: true,
             settle: true,
             hardness: 0.6,

@@ -1,7 +1,12 @@
 //! The stage `lava`.
 
-use super::{eruption::Eruption, law::Law, params::LavaParams};
+use super::{
+    eruption::{COLUMNS, Eruption},
+    law::Law,
+    params::LavaParams,
+};
 use crate::{
+    bake::{Column, Subject},
     grid::Grid,
     process::{Context, Placement, Process, ProcessError, State, Step},
     volcano::outlet::check,
@@ -44,6 +49,7 @@ impl Lava {
         let run = Eruption::new(&self.params, world, self.placement.mask.as_ref(), context.key);
         let run = run.map_err(ProcessError::Unfit)?;
         world.ledger.open(context.stage, Matter::Lava, 0.0);
+        world.add_plumes(&self.params.plumes(&run.sources, &run.schedule, world, context.key));
         Ok(run)
     }
 
@@ -136,6 +142,12 @@ impl Process for Lava {
         coarse.into_iter().chain(clocks).collect()
     }
 
+    fn subject(&self, grid: &Grid) -> Option<Subject> {
+        let volume_m3 = Law::new(&self.params, grid).volume_m3();
+        let columns = COLUMNS.iter().map(|[name, unit]| Column::new(name, unit)).collect();
+        Some(Subject { columns, duration_s: 60.0 * self.params.duration_min, volume_m3 })
+    }
+
     fn findings(&self) -> Vec<String> {
         self.gone.clone().into_iter().collect()
     }
@@ -152,7 +164,7 @@ impl Process for Lava {
         self.saved = None;
         let whole = 60.0 * self.params.duration_min;
         let [from, to] = [self.done, self.done + 1].map(|k| whole * (k as f64 / self.steps as f64));
-        run.run(from, to).map_err(ProcessError::Failed)?;
+        run.run_on(from, to, context.tape()).map_err(ProcessError::Failed)?;
         self.done += 1;
         if self.done >= self.steps {
             run.settle();

@@ -189,12 +189,20 @@ fn requests_that_make_no_sense_end_in_a_line_or_a_stable_world() {
     let stable = |change: &dyn Fn(&mut LavaParams, &mut World)| {
         let (mut params, mut world) = (small(), cone());
         change(&mut params, &mut world);
-        let mut own = eruption(&params, &world);
+        let (mut own, stock) = (eruption(&params, &world), world.rock_m3());
         own.run(0.0, 3.0).unwrap();
         own.settle();
+        // Told once, when all is over: the world has had no lava before.
         own.land.write(&mut world, 0.6, "lava");
         let [drawn, froze, left] = own.counts();
         assert_eq!(drawn, froze + left);
+        let volume = froze as f64 * own.particle_m3();
+        let booked = world.ledger.account("lava", Matter::Rock).map_or(0.0, |account| account.came_in_m3);
+        let stored = world.rock_m3() - stock;
+        assert!(
+            (booked - volume).abs() <= 1e-6 * volume && (stored - volume).abs() <= 1e-6 * volume,
+            "{booked} {stored} of {volume}"
+        );
         assert!(world.first_non_finite().is_none());
         own.counts()
     };

@@ -1,5 +1,6 @@
 //! Lava against what is known of it: closed forms of flow and heat, books of volume, and input that makes no sense.
 
+mod bake;
 mod books;
 mod flows;
 mod heat;
