@@ -116,5 +116,5 @@ fn neighbours(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, lava, neighbours);
+criterion_group!(benches, neighbours, lava);
 criterion_main!(benches);

@@ -96,9 +96,9 @@ mod tests {
     fn what_particles_carry_goes_with_them() {
         let grid = Grid::new(8, 8, 64.0, Edges::Wrap);
         let mut swarm = Swarm::new(&grid, 2.0);
-        for k in 0..40 {
+        for k in 0..40u64 {
             // Every other one has left over the east and comes back in the west.
-            let x = if k % 2 == 0 { 63.0 - k as f32 } else { 64.5 + k as f32 };
+            let x = if k.is_multiple_of(2) { 63.0 - k as f32 } else { 64.5 + k as f32 };
             swarm.add([[x, 5.0, k as f32], [k as f32, 0.0, 0.0]], k as f32, k as f64, k);
         }
         swarm.sort(&grid, 3.0);
@@ -108,7 +108,7 @@ mod tests {
         assert!(seen.into_iter().eq(0..40) && !swarm.born.is_sorted());
         for i in 0..40 {
             let k = swarm.born[i];
-            let x = if k % 2 == 0 { 63.0 - k as f32 } else { 0.5 + k as f32 };
+            let x = if k.is_multiple_of(2) { 63.0 - k as f32 } else { 0.5 + k as f32 };
             let cloud = &swarm.cloud;
             let own = [cloud.x[i], cloud.z[i], cloud.vx[i], swarm.clock_s[i], swarm.load[i] as f32];
             assert_eq!(own, [x, k as f32, k as f32, k as f32, k as f32]);
