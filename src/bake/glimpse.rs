@@ -4,7 +4,7 @@
 //! way that the step has just gone. What else is known of them changes a block at a time, and lies in proportion between its
 //! two ends. Nothing of the flow is changed by being seen.
 
-use super::{Frame, due_s, frames_by};
+use super::{Frame, SLACK_S, due_s, frames_by};
 
 /// Where everyone is at a moment, in the order of the block.
 #[derive(Clone, Debug)]
@@ -53,10 +53,13 @@ impl Glimpses {
         let now_s = self.began_s + since_s;
         while self.due(now_s) {
             let time_s = due_s(self.next, self.per_s);
-            let back_s = (now_s - time_s).max(0.0) as f32;
+            // A frame at the step's end shows that, and not what rounding makes of it.
+            let at_end = (now_s - time_s).abs() <= SLACK_S;
+            let back_s = if at_end { 0.0 } else { (now_s - time_s) as f32 };
             let back = |axis: usize| place[axis].iter().zip(velocity[axis]).map(|(at, v)| at - back_s * v).collect();
             let place = [back(0), back(1), back(2)];
-            self.seen.push(Glimpse { time_s, since_s: (time_s - self.began_s).clamp(0.0, since_s), place });
+            let then_s = if at_end { since_s } else { (time_s - self.began_s).clamp(0.0, since_s) };
+            self.seen.push(Glimpse { time_s, since_s: then_s, place });
             self.next += 1;
         }
     }

@@ -1,3 +1,5 @@
+//! Recordings that are whole, damaged, stopped and played, against what was put in.
+
 use std::{fs, path::Path};
 
 use super::*;

@@ -15,6 +15,8 @@ const SPREAD: f32 = 0.1;
 const RUN: usize = 8192;
 /// Passes before what is left is spread over the whole map.
 const PASSES: usize = 128;
+/// Rounds in which the last of it finds its places.
+const ROUNDS: usize = 16;
 /// Most that a cell gets at once where it cannot be helped, m.
 const THIN_M: f64 = 1e-3;
 
@@ -54,22 +56,43 @@ pub fn lay_all(bed: &mut Bed, rest: &mut [f32]) {
         return;
     }
     // A thin coat on cells all over the map, on land where sea has to stay sea.
-    let land_m = bed.sea_m + bed.margin_m + THIN_M as f32;
-    let open = |bed: &Bed, i: usize| bed.rate(i) > 0.0 && (!bed.locked || bed.height(i) > land_m);
-    let mut places: Vec<usize> = (0..rest.len()).filter(|&i| open(bed, i)).collect();
+    let may = |bed: &Bed, i: usize| bed.rate(i) > 0.0 && way(bed, i, sum) > THIN_M;
+    let land = |bed: &Bed, i: usize| !bed.locked || bed.height(i) >= bed.sea_m;
+    let among = |fits: &dyn Fn(usize) -> bool| (0..rest.len()).filter(|&i| fits(i)).collect::<Vec<_>>();
+    let mut places = among(&|i| may(bed, i) && land(bed, i));
     if places.is_empty() {
-        places = (0..rest.len()).filter(|&i| bed.rate(i) > 0.0).collect();
+        places = among(&|i| may(bed, i));
     }
     if places.is_empty() {
-        places = (0..rest.len()).collect();
+        places = among(&|i| bed.rate(i) > 0.0);
     }
-    let count = ((sum.abs() / THIN_M).ceil() as usize).clamp(1, places.len());
+    if places.is_empty() {
+        places = among(&|_| true);
+    }
+    let mut count = ((sum.abs() / THIN_M).ceil() as usize).clamp(1, places.len());
     let mut left = sum;
-    for k in 0..count {
-        let i = places[k * places.len() / count];
-        let old = bed.change[i];
-        bed.change[i] = (old as f64 + left / (count - k) as f64) as f32;
-        left -= bed.change[i] as f64 - old as f64;
+    // Places that are full at their share leave more to the others; where none has room, rock is kept before the coast.
+    for round in 1..=ROUNDS {
+        for k in 0..count {
+            let i = places[k * places.len() / count];
+            let (old, most) = (bed.change[i], if round < ROUNDS { way(bed, i, sum) } else { f64::INFINITY });
+            let share = (left / (count - k) as f64).clamp(-most, most);
+            bed.change[i] = (old as f64 + share) as f32;
+            left -= bed.change[i] as f64 - old as f64;
+        }
+        if !bed.locked || left.abs() <= 1e-6 * sum.abs() {
+            break;
+        }
+        count = places.len();
+    }
+}
+
+/// How far a height may go up (or down, where `sum` is below 0) without crossing the coast, m.
+fn way(bed: &Bed, i: usize, sum: f64) -> f64 {
+    let height = bed.height(i);
+    match bed.coast() {
+        Some(coast) if (height < coast.sea_m) == (sum > 0.0) => f64::from(coast.free(height)),
+        _ => f64::INFINITY,
     }
 }
 
@@ -223,5 +246,31 @@ fn spread_within(rest: &[f32], width: usize, y: usize, next: &mut [f32]) {
             flow += held[k][x] - here;
         }
         *next = here + SPREAD * flow;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Grid;
+
+    /// An all but drowned map takes what is left into its sea, up to the coast, and land never sinks under it.
+    #[test]
+    fn what_is_left_stays_on_its_side_of_the_coast() {
+        let grid = Grid::new(4, 1, 40.0, Edges::Closed);
+        let bed = |start: [f32; 4]| Bed { locked: true, margin_m: 1e-3, sea_m: 0.0, ..Bed::new(grid, start.to_vec()) };
+        for (start, sum) in [
+            ([-0.5, -2.0, -0.001, -0.0005], 2.2f32),
+            ([-0.5, -2.0, 0.0005, -1.0], 50.0),
+            ([0.5, 2.0, 0.001, 0.0005], -2.2),
+        ] {
+            let mut own = bed(start);
+            lay_all(&mut own, &mut [sum, 0.0, 0.0, 0.0]);
+            let laid: f64 = sum_f64(&own.change);
+            assert!((laid - f64::from(sum)).abs() < 1e-5, "{laid} of {sum}");
+            for (i, z) in start.into_iter().enumerate() {
+                assert_eq!(z < 0.0, own.height(i) < 0.0, "{z} became {}", own.height(i));
+            }
+        }
     }
 }

@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// How much of the ground a puff hides in its middle at most.
-const DENSITY: f64 = 0.6;
+const DENSITY: f64 = 0.45;
 /// Grey of a puff when it is born and when it is gone, sRGB.
 const GREY: [f64; 2] = [214.0, 120.0];
 

@@ -9,9 +9,9 @@ use crate::{
 };
 
 /// Puffs a second of a vent; a fissure has as many more for each stretch of so many of its half widths, at most so many.
-const PUFFS_PER_S: f64 = 4.0;
-const STRETCH: f64 = 8.0;
-const MOST_PER_S: f64 = 20.0;
+const PUFFS_PER_S: f64 = 3.0;
+const STRETCH: f64 = 16.0;
+const MOST_PER_S: f64 = 8.0;
 /// How fast their rise slows, s, how long they last, s, and how much wider they get for a metre of rise.
 const SLOWS_S: f64 = 15.0;
 const LASTS_S: f64 = 40.0;
