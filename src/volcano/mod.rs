@@ -6,6 +6,8 @@
 //! sinks, they are asked through the world's tables. Vents go into the table that [`crate::world::World::vents`] reads.
 
 pub mod ash;
+#[cfg(test)]
+mod beside;
 mod edifice;
 mod heat;
 mod island;
@@ -36,6 +38,11 @@ fn place_m(given_km: Option<[f64; 2]>, grid: &Grid) -> [f64; 2] {
 fn length_m(given_km: Option<f64>, share: f64, grid: &Grid) -> f64 {
     let [w, h] = grid.extent_m();
     given_km.map_or(share * w.max(h), |km| km * 1e3)
+}
+
+/// What a person should know of lava that left the map.
+fn over_rim(m3: f64) -> String {
+    format!("{m3:.0} m3 of lava left over the rim of the map; a larger extent_km, or vents further in, would keep it")
 }
 
 /// Distance of a place from the map, 0 on it; m.

@@ -169,3 +169,53 @@ fn what_does_not_go_together_is_found_before_the_run() {
     refused("kind = \"volcano\"\nplace = \"arc\"", "'volcano' needs the layer 'plate_id'");
     refused("kind = \"island\"\nislands = [{ at_km = [300, 50] }]", "'island': islands[1]: at_km = [300, 50]");
 }
+
+#[test]
+fn eruptions_that_make_no_sense_end_in_a_line() {
+    let place = Place::new();
+    let erupt = |stage: &str, line: &str| {
+        let ground = "[world]\nsize = 16\nextent_km = 1\n\n[[stage]]\nkind = \"fbm\"\n";
+        place.write("r.toml", format!("{ground}\n[[stage]]\n{stage}\n"));
+        refused(&place, &["grow", "r.toml", "--out", "w"], &format!("r.toml:{line}"), 2);
+    };
+    let off = "vent 1 at 9 km, 0.5 km does not lie on the map, which is 1 km by 1 km";
+    let none = "the vents have no part of the lava; give one of them a 'part' above 0";
+    let cold = "lava of temperature_degc = 400 is rock before it comes out; raise it above solidus_degc = 1000";
+    let frozen = [("lava", ", or set freeze = false"), ("lava_sheet", "")];
+    for (kind, or) in frozen {
+        let with = |rest: &str, line: &str| erupt(&format!("kind = \"{kind}\"\n{rest}"), line);
+        with("vent = [{ at_km = [9, 0.5] }]", &format!("8: stage '{kind}': {off}"));
+        with("vent = [{ at_km = [0.5, 0.5], part = 0 }]", &format!("8: stage '{kind}': {none}"));
+        with("temperature_degc = 400", &format!("8: stage '{kind}': {cold}{or}"));
+        let list = format!("(`upthrust params {kind}` lists what there is)");
+        with("lavva = 1", &format!("10: unknown parameter 'lavva' in stage '{kind}' {list}"));
+        let vent = "vent = [{ at_km = [0.5, 0.5], prat = 1 }]";
+        let meant = "(did you mean 'part'?)";
+        with(vent, &format!("10: unknown parameter 'prat' in 'vent[1]' of stage '{kind}' {meant}"));
+    }
+    let negative = "must be a number between 0 and";
+    erupt(
+        "kind = \"lava\"\nduration_min = -1",
+        &format!("10: 'duration_min' in stage 'lava' {negative} 100000 min, not -1"),
+    );
+    erupt(
+        "kind = \"lava\"\nschedule = [{ start_time = 0, duration = -1, m3_per_s = 1 }]",
+        &format!("10: 'duration' in 'schedule[1]' of stage 'lava' {negative} 1e9 s, not -1"),
+    );
+    erupt(
+        "kind = \"lava_sheet\"\nduration_h = -1",
+        &format!("10: 'duration_h' in stage 'lava_sheet' {negative} 1000000 h, not -1"),
+    );
+    erupt(
+        "kind = \"lava_sheet\"\nschedule = [{ start_h = 0, duration_h = -1, m3_per_s = 1 }]",
+        &format!("10: 'duration_h' in 'schedule[1]' of stage 'lava_sheet' {negative} 1000000 h, not -1"),
+    );
+    erupt(
+        "kind = \"lava_sheet\"\nschedule = [{ start_h = 0, m3_per_s = 1e6 }]",
+        "8: stage 'lava_sheet': the schedule's 1.7e11 m3 of lava would lie 172800 m deep over the whole map, 300 m at \
+         most; lower m3_per_s or the keys' duration_h, or raise extent_km",
+    );
+    erupt("kind = \"ash\"\nvolume_km3 = -1", &format!("10: 'volume_km3' in stage 'ash' {negative} 100000 km3, not -1"));
+    let list = "(`upthrust params ash` lists what there is)";
+    erupt("kind = \"ash\"\nwindy = 1", &format!("10: unknown parameter 'windy' in stage 'ash' {list}"));
+}

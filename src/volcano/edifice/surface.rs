@@ -2,7 +2,8 @@
 //!
 //! A volcano's noise multiplies its shape by `exp(f·N)`, so that it follows the height and never turns it round: `N` is the
 //! sum of fBm at two frequencies and turbulence, each of unit standard deviation over its amplitude, and `f` fades from 1 at
-//! `r_v` to 0 at `τ·r_v`. Wear then works on the height. Several join as `(Σ zᵢ⁴)^¼`: alone, each keeps its height, where
+//! `r_v` to 0 at `τ·r_v`. Towards a crater's middle it falls to a tenth: the noise goes with the height above the foot, of
+//! which a crater is but a small part, and would bury it. Wear then works on the height. Several join as `(Σ zᵢ⁴)^¼`: alone, each keeps its height, where
 //! two meet there is no crease, and a crater on another's flank stays one.
 
 use super::{age::Wear, profile::Cone};
@@ -12,6 +13,9 @@ use crate::noise::{Fbm, Key, Octaves, Sampler, smoothstep};
 const FOLDED: [f64; 2] = [0.249, 0.176];
 /// Strength of the noise of twice the frequency over that of the first.
 const SECOND: f64 = 0.5;
+
+/// Share of the noise that a crater's middle has.
+const FLOOR: f64 = 0.1;
 
 /// How rough a volcano is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,6 +156,12 @@ impl Ready {
 
     /// How much of the noise is there, and its derivative.
     fn faded(&self, r_m: f64) -> (f64, f64) {
+        let rim = self.edifice.cone.crater_radius_m;
+        if r_m < rim {
+            // Level at both ends, so that heights stay smooth at the rim and in the middle.
+            let t = r_m / rim;
+            return (FLOOR + (1.0 - FLOOR) * smoothstep(t), (1.0 - FLOOR) * 6.0 * t * (1.0 - t) / rim);
+        }
         let (from, width) = (self.edifice.cone.radius_m, self.edifice.cone.reach_m() - self.edifice.cone.radius_m);
         if width <= 0.0 {
             return (f64::from(r_m < from), 0.0);

@@ -41,6 +41,8 @@ pub struct Eruption {
     pub(super) froze: u64,
     /// Particles that left over the rim, or were dropped in the end.
     pub(super) left: u64,
+    /// Of these, those that left over the rim.
+    pub(super) over_rim: u64,
 }
 
 /// Particles as they are now, for films and pictures. The order changes from step to step; `born` names them.
@@ -83,7 +85,7 @@ impl Eruption {
         let mut flow = Flow::new(law.clone(), grid);
         flow.sea = (sea_m - f64::from(land.datum_m)) as f32;
         let sources = vents.into_iter().map(|vent| Source::new(vent, &law)).collect();
-        Self { law, schedule, flow, land, sources, key, drawn: 0, froze: 0, left: 0 }
+        Self { law, schedule, flow, land, sources, key, drawn: 0, froze: 0, left: 0, over_rim: 0 }
     }
 
     /// Runs from a moment to another, s after the eruption began.
@@ -201,7 +203,9 @@ impl Eruption {
         let (mut stays, mut rock) = (Vec::with_capacity(n), Vec::new());
         for i in 0..n {
             let at = [self.flow.swarm.cloud.x[i], self.flow.swarm.cloud.y[i]];
-            match fate((self.is_out(i), i)) {
+            let out = self.is_out(i);
+            self.over_rim += u64::from(out);
+            match fate((out, i)) {
                 Fate::Stays => stays.push(i as u32),
                 Fate::Rock => rock.push((at, self.flow.temperature(i))),
                 Fate::Left => self.left += 1,
@@ -237,6 +241,11 @@ impl Eruption {
     /// Particles that came out, froze, and left; the others flow.
     pub fn counts(&self) -> [u64; 3] {
         [self.drawn, self.froze, self.left]
+    }
+
+    /// Particles that left over the rim.
+    pub fn over_rim(&self) -> u64 {
+        self.over_rim
     }
 
     /// Particles that were due and found no room.

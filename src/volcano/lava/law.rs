@@ -149,6 +149,25 @@ impl Law {
         Pace { dt, implicit }
     }
 
+    /// A line for a step that the recipe asks for and cannot have: even lava at rest, one particle deep and as hot as it
+    /// comes out, needs a shorter one.
+    pub(super) fn shortened(&self) -> Option<String> {
+        let asked = self.params.time_step_s;
+        let sound = self.sound(0.0, 0.0);
+        let stiff = match self.params.viscosity {
+            Viscosity::Off => 0.0,
+            Viscosity::Document => self.document_viscosity(self.params.temperature_degc),
+            Viscosity::Pairs => self.viscosity(self.params.temperature_degc, sound),
+        };
+        let most = self.pace(0.0, sound, stiff).dt;
+        (most < asked).then(|| {
+            format!(
+                "time_step_s = {asked} is shortened to at most {most:.4} s, and further where lava is faster or stiffer; \
+                 lower it, or set force_time_step = true"
+            )
+        })
+    }
+
     /// What sound alone allows, whatever the recipe asks for, s.
     pub(super) fn free_pace(&self, sound: f64) -> f64 {
         self.limit_s(0.0, sound)

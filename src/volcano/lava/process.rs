@@ -9,7 +9,7 @@ use crate::{
     bake::{Column, Subject},
     grid::Grid,
     process::{Context, Placement, Process, ProcessError, State, Step},
-    volcano::outlet::check,
+    volcano::{outlet::check, over_rim},
     world::{Layer, Matter, Table, World},
 };
 
@@ -29,7 +29,7 @@ impl LavaParams {
     pub fn process(self, placement: Placement, steps: Option<u64>) -> Box<dyn Process> {
         let usual = (60.0 * self.duration_min / STEP_S).ceil().clamp(1.0, MOST_STEPS) as u64;
         let steps = steps.unwrap_or(usual).max(1);
-        Box::new(Lava { params: self, placement, steps, done: 0, run: None, saved: None, gone: None })
+        Box::new(Lava { params: self, placement, steps, done: 0, run: None, saved: None, gone: Vec::new() })
     }
 }
 
@@ -41,7 +41,7 @@ struct Lava {
     run: Option<Eruption>,
     saved: Option<State>,
     /// What there is to say when it is over.
-    gone: Option<String>,
+    gone: Vec<String>,
 }
 
 impl Lava {
@@ -139,7 +139,7 @@ impl Process for Lava {
         let clocks = (factor != 1.0).then(|| {
             format!("lava cools {factor} times as fast as it flows, to be rock within {} min", self.params.duration_min)
         });
-        coarse.into_iter().chain(clocks).collect()
+        coarse.into_iter().chain(clocks).chain(law.shortened()).collect()
     }
 
     fn subject(&self, grid: &Grid) -> Option<Subject> {
@@ -149,7 +149,7 @@ impl Process for Lava {
     }
 
     fn findings(&self) -> Vec<String> {
-        self.gone.clone().into_iter().collect()
+        self.gone.clone()
     }
 
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
@@ -183,11 +183,7 @@ impl Process for Lava {
         let Some(run) = &self.run else { return Ok(()) };
         show(run, world);
         if self.done >= self.steps {
-            let owed = run.owed().floor();
-            self.gone = (owed >= 1.0).then(|| {
-                let m3 = owed * run.particle_m3();
-                format!("{m3:.0} m3 of the schedule found no room at the vents; widen them, raise max_particles, or erupt slower")
-            });
+            self.gone = told(run);
         }
         Ok(())
     }
@@ -206,6 +202,19 @@ impl Process for Lava {
         self.saved = (done > 0).then_some(state);
         Ok(())
     }
+}
+
+/// What became of lava that is not on the map.
+fn told(run: &Eruption) -> Vec<String> {
+    let each = run.particle_m3();
+    let owed = (run.owed() >= 1.0).then(|| {
+        let m3 = run.owed().floor() * each;
+        format!(
+            "{m3:.0} m3 of the schedule found no room at the vents; widen them, raise max_particles, or erupt slower"
+        )
+    });
+    let over = (run.over_rim() > 0).then(|| over_rim(run.over_rim() as f64 * each));
+    owed.into_iter().chain(over).collect()
 }
 
 fn broken() -> ProcessError {

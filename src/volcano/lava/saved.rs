@@ -9,9 +9,9 @@ use crate::{
 };
 
 /// Names the layout.
-const MARK: u64 = 0x4C41_0001;
+const MARK: u64 = 0x4C41_0002;
 /// Words before the lists.
-const HEAD: usize = 15;
+const HEAD: usize = 16;
 
 /// Bytes that are read one word after the other.
 struct Reader<'a> {
@@ -56,6 +56,7 @@ impl Eruption {
             self.drawn,
             self.froze,
             self.left,
+            self.over_rim,
             u64::from(land.datum_m.to_bits()),
             u64::from(flow.sea.to_bits()),
             flow.sound.to_bits(),
@@ -91,7 +92,8 @@ impl Eruption {
         };
         let mut bytes = Reader { bytes: &state.blob };
         let head = bytes.words(HEAD as u64)?;
-        let &[_, mark, n, vents, risen, drawn, froze, left, datum, sea, sound, ground, air, sky, in_sea] = &head[..]
+        let &[_, mark, n, vents, risen, drawn, froze, left, over, datum, sea, sound, ground, air, sky, in_sea] =
+            &head[..]
         else {
             return None;
         };
@@ -130,7 +132,7 @@ impl Eruption {
             Land::restored(grid, f32::from_bits(datum as u32), [field("start")?, field("lava")?], [raised, slivers]);
         let mut own = Self::at(law, params.schedule().ok()?, (land, 0.0), Vec::new(), key);
         own.sources = sources;
-        (own.drawn, own.froze, own.left) = (drawn, froze, left);
+        (own.drawn, own.froze, own.left, own.over_rim) = (drawn, froze, left, over);
         let flow = &mut own.flow;
         (flow.sea, flow.sound) = (f32::from_bits(sea as u32), f64::from_bits(sound));
         let lost = [ground, air, sky, in_sea].map(f64::from_bits);

@@ -1,10 +1,12 @@
 //! Of which cells lava comes out, and what that may take.
 
+use std::f64::consts::PI;
+
 use super::{law::Law, params::LavaSheetParams};
 use crate::{
     grid::{Field, Grid},
     volcano::{
-        outlet::{Outlet, check, outlets},
+        outlet::{Outlet, VentParams, check, outlets},
         schedule::{HOUR_S, Schedule},
     },
     world::World,
@@ -12,8 +14,14 @@ use crate::{
 
 /// Places a side of a cell that are asked whether they lie in a vent.
 const PLACES: usize = 4;
-/// Most steps in time that a run may need: more than anyone waits for.
-const MOST_STEPS: f64 = 2e7;
+/// Most steps in time that a run may need.
+const MOST_STEPS: f64 = 1e7;
+/// Most steps of single cells: some three hours of CPU time, measured on maps that lava covers.
+const MOST_WORK: f64 = 1.5e11;
+/// Depth to which a sheet lies, about, where it has room, m: with its volume, the cells that work.
+const USUAL_M: f64 = 10.0;
+/// Most lava over the whole map, m: beyond that it is no flow on a land, but the land.
+const MOST_DEEP_M: f64 = 300.0;
 /// Share of a step's limit that lava may pile up by on a vent before it flows off.
 const PILE: f64 = 0.5;
 
@@ -43,7 +51,7 @@ impl Law {
 }
 
 impl LavaSheetParams {
-    /// Refuses vents off the map, and what would not end in a day: fronts pass a cell in as many steps as their speed allows,
+    /// Refuses vents off the map, and what would not end in hours: fronts pass a cell in as many steps as their speed allows,
     /// and vents fill as fast as they are fed.
     pub(super) fn check_work(&self, grid: &Grid) -> Result<(), String> {
         check(&self.vent, grid)?;
@@ -51,8 +59,17 @@ impl LavaSheetParams {
         let law = Law::new(self);
         let whole_s = self.duration_h * HOUR_S;
         let flow = whole_s * 12.0 * self.most_speed_m_per_s / grid.cell_m;
+        let open_m2 = self.open_m2(grid);
+        let volume_m3: f64 = schedule.until(whole_s).map(|(span_s, m3_per_s)| span_s * m3_per_s).sum();
+        let deep_m = volume_m3 / (grid.cells() as f64 * grid.cell_area_m2());
+        if deep_m > MOST_DEEP_M {
+            return Err(format!(
+                "the schedule's {volume_m3:.1e} m3 of lava would lie {deep_m:.0} m deep over the whole map, \
+                 {MOST_DEEP_M} m at most; lower m3_per_s or the keys' duration_h, or raise extent_km"
+            ));
+        }
         let fill = |(span_s, m3_per_s): (f64, f64)| {
-            let rise_m_s = m3_per_s / grid.cell_area_m2();
+            let rise_m_s = m3_per_s / open_m2;
             if rise_m_s > 0.0 { span_s * rise_m_s / law.pile_m(rise_m_s, grid.cell_m) } else { 0.0 }
         };
         let steps = flow + schedule.until(whole_s).map(fill).sum::<f64>() + 2.0 * self.schedule.len() as f64;
@@ -63,7 +80,26 @@ impl LavaSheetParams {
                 grid.cell_m
             ));
         }
+        let covered = (volume_m3 / USUAL_M / grid.cell_area_m2()).min(grid.cells() as f64);
+        if steps * covered > MOST_WORK {
+            return Err(format!(
+                "lava may cover {covered:.1e} cells for {steps:.1e} steps in time, hours of work; lower m3_per_s, duration_h \
+                 or most_speed_m_per_s, or take a smaller size"
+            ));
+        }
         Ok(())
+    }
+
+    /// Area that lava comes out of, m²: of the recipe's vents, or of the smallest that a world may offer.
+    fn open_m2(&self, grid: &Grid) -> f64 {
+        let area = |vent: &VentParams| {
+            let radius_m = vent.radius_m.unwrap_or(grid.cell_m);
+            let to_km = vent.to_km.unwrap_or(vent.at_km);
+            let long_m = 1e3 * libm::hypot(to_km[0] - vent.at_km[0], to_km[1] - vent.at_km[1]);
+            (PI * radius_m * radius_m + 2.0 * radius_m * long_m).max(grid.cell_area_m2())
+        };
+        let areas: f64 = self.vent.iter().filter(|vent| vent.part != Some(0.0)).map(area).sum();
+        if areas > 0.0 { areas } else { PI * grid.cell_area_m2() }
     }
 }
 

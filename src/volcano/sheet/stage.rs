@@ -5,7 +5,10 @@ use super::{cells::Sheet, emission::sources, law::Law, params::LavaSheetParams};
 use crate::{
     grid::{Field, Grid},
     process::{Context, Placement, Process, ProcessError, State, Step},
-    volcano::schedule::{HOUR_S, Schedule},
+    volcano::{
+        over_rim,
+        schedule::{HOUR_S, Schedule},
+    },
     world::{Layer, Matter, World},
 };
 
@@ -42,6 +45,8 @@ struct Run {
     melt: Vec<Melt>,
     /// What the layers of the column could not hold yet, m.
     rest: Field<f32>,
+    /// Lava that left over the rim so far, m³.
+    over_rim_m3: f64,
 }
 
 impl LavaSheetParams {
@@ -56,7 +61,7 @@ impl Stage {
         let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
         let sources = sources(&self.params, world, mask.as_ref()).map_err(ProcessError::Unfit)?;
         world.ledger.open(context.stage, Matter::Lava, 0.0);
-        Ok(Run { sources, melt: Vec::new(), rest: Field::filled(world.grid, 0.0) })
+        Ok(Run { sources, melt: Vec::new(), rest: Field::filled(world.grid, 0.0), over_rim_m3: 0.0 })
     }
 
     /// The seconds between which a step runs.
@@ -131,6 +136,7 @@ impl Stage {
         let flows_m3 = melt.iter().map(|melt| melt.depth).sum::<f64>() * area;
         world.ledger.close(context.stage, Matter::Lava, flows_m3);
         run.melt = melt;
+        run.over_rim_m3 += sheet.books.left * area;
     }
 
     fn elapsed_yr(&self) -> f64 {
@@ -192,7 +198,7 @@ impl Run {
     }
 
     fn save(&self) -> State {
-        let mut blob = Vec::new();
+        let mut blob = self.over_rim_m3.to_le_bytes().to_vec();
         blob.extend((self.sources.len() as u64).to_le_bytes());
         for &(cell, share) in &self.sources {
             blob.extend((cell as u64).to_le_bytes());
@@ -213,8 +219,9 @@ impl Run {
         if blob.len() != 8 * words.len() {
             return None;
         }
-        let count = usize::try_from(u64::from_le_bytes(*words.first()?)).ok()?;
-        let (sources, melt) = words[1..].split_at_checked(count.checked_mul(2)?)?;
+        let (&[over_rim, count], words) = words.split_first_chunk()?;
+        let count = usize::try_from(u64::from_le_bytes(count)).ok()?;
+        let (sources, melt) = words.split_at_checked(count.checked_mul(2)?)?;
         let cell = |word: [u8; 8]| Some(u64::from_le_bytes(word)).filter(|&cell| cell < cells);
         let pair = |two: &[[u8; 8]]| Some((cell(two[0])? as usize, f64::from_le_bytes(two[1])));
         let sources = sources.chunks_exact(2).map(pair).collect::<Option<Vec<_>>>()?;
@@ -224,7 +231,7 @@ impl Run {
         };
         let whole = melt.len().is_multiple_of(3);
         let melt = melt.chunks_exact(3).map(three).collect::<Option<Vec<_>>>().filter(|_| whole)?;
-        Some(Self { sources, melt, rest })
+        Some(Self { sources, melt, rest, over_rim_m3: f64::from_le_bytes(over_rim) })
     }
 }
 
@@ -257,6 +264,12 @@ impl Process for Stage {
         let fits = (least_m..=most_m).contains(&cell_m);
         let text = format!("a sheet of lava suits cells of {least_m} to {most_m} m; these are {cell_m:.3} m wide");
         if fits { Vec::new() } else { vec![text] }
+    }
+
+    fn findings(&self) -> Vec<String> {
+        let over_m3 = self.run.as_ref().map_or(0.0, |run| run.over_rim_m3);
+        // Less than it can say is not worth a line.
+        if self.done < self.steps || over_m3 < 0.5 { Vec::new() } else { vec![over_rim(over_m3)] }
     }
 
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {

@@ -234,3 +234,30 @@ fn an_eruption_on_nothing_but_a_schedule_is_deterministic_in_its_schedule() {
     point.run(0.0, 2.0).unwrap();
     assert_eq!(point.counts()[0], 10);
 }
+
+#[test]
+fn lava_over_the_rim_and_shortened_steps_are_said() {
+    use crate::process::{Context, Placement};
+    let stay = std::sync::atomic::AtomicBool::new(false);
+    let said = |params: LavaParams| {
+        let mut world = cone();
+        let mut process = params.process(Placement::default(), Some(2));
+        let context = Context::new(1, "lava", &stay);
+        while !process.step(&mut world, &context).unwrap().finished() {}
+        process.publish(&mut world, &context).unwrap();
+        let left = world.ledger.account("lava", Matter::Lava).unwrap().left_m3 - world.rock_m3() + cone().rock_m3();
+        (process.remarks(&world.grid), process.findings(), left)
+    };
+    let mut own = small();
+    assert!(said(own.clone()).1.is_empty());
+    own.vent[0].at_km = [0.0479, 0.024];
+    own.time_step_s = 0.5;
+    let (remarks, findings, left_m3) = said(own.clone());
+    let [over] = &findings[..] else { panic!("{findings:?}") };
+    let m3: f64 = over.split(' ').next().unwrap().parse().unwrap();
+    // Written without a fraction; rock is kept in single precision.
+    assert!(over.contains("left over the rim") && (m3 - left_m3).abs() < 1.0 && m3 > 0.0, "{over}: {left_m3}");
+    assert!(remarks.iter().any(|line| line.starts_with("time_step_s = 0.5 is shortened")), "{remarks:?}");
+    let remarks = said(LavaParams { time_step_s: 1e-3, ..own }).0;
+    assert!(!remarks.iter().any(|line| line.contains("shortened")), "{remarks:?}");
+}

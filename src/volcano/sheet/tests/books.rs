@@ -128,6 +128,14 @@ fn what_cannot_be_is_refused_in_a_line_and_what_is_odd_is_survived() {
     assert!(refused(LavaSheetParams { schedule: negative, ..base() }).contains("at least 0"));
     assert!(refused(LavaSheetParams { schedule: key(f64::NAN), ..base() }).contains("at least 0"));
     assert!(refused(LavaSheetParams { duration_h: 1e6, ..base() }).contains("steps"));
+    let flood = refused(LavaSheetParams { schedule: key(1e6), ..base() });
+    assert!(flood.contains("m deep over the whole map") && flood.contains("lower m3_per_s"), "{flood}");
+    let wide = LavaSheetParams { schedule: key(1e6), duration_h: 48.0, ..base() };
+    let fine = Grid::new(1024, 1024, 51_200.0, Edges::Open);
+    let long = wide.clone().process(Placement::default(), None).fit(&fine).unwrap_err().to_string();
+    assert!(long.contains("hours of work") && long.contains("lower m3_per_s"), "{long}");
+    // The same rate is nothing special on a map of a thousand kilometres.
+    wide.process(Placement::default(), None).fit(&Grid::new(512, 512, 1.024e6, Edges::Open)).unwrap();
     // Nothing comes out, for no time, on flat ground, under the sea: nothing breaks.
     for odd in [
         LavaSheetParams { schedule: key(0.0), ..base() },
