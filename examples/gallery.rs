@@ -377,7 +377,7 @@ fn five_ways() -> Outcome<[RgbImage; 2]> {
         ("the start", ""),
         ("thermal", "talus_angle_deg = 25.0\nrock_angle_deg = 30.0\n"),
         ("hydraulic_cells", "morphological_factor = 28000.0\n"),
-        ("pipes", "duration_h = 8.0\ntalus_angle_deg = 50.0\nwet_talus_angle_deg = 50.0\n"),
+        ("pipes", "duration_h = 9.3\ntalus_angle_deg = 50.0\nwet_talus_angle_deg = 50.0\n"),
         ("rain_particles", "duration_min = 2.0\nmorphological_factor = 72.0\n"),
         ("droplets", "duration_yr = 5500.0\n"),
     ];
