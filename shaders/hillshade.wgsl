@@ -1,3 +1,5 @@
+#import lens
+
 // Ground under one sun. Twin of the arithmetic in src/render/hillshade.rs; looks one cell to each side.
 
 struct Sun {
@@ -11,13 +13,6 @@ struct Sun {
 
 @group(0) @binding(0) var height_m: texture_2d<f32>;
 @group(0) @binding(1) var<uniform> sun: Sun;
-
-// One triangle that covers the picture.
-@vertex
-fn cover(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
-    let at = vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 4.0 - 1.0;
-    return vec4<f32>(at, 0.0, 1.0);
-}
 
 // The neighbour `step` cells on, along one axis.
 fn neighbour(at: i32, step: i32, size: i32) -> i32 {
@@ -37,8 +32,8 @@ fn slope(low: f32, high: f32, before: i32, after: i32) -> f32 {
 }
 
 @fragment
-fn shade(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let at = vec2<i32>(position.xy);
+fn main(in: Whole) -> @location(0) vec4<f32> {
+    let at = vec2<i32>(in.position.xy);
     let size = vec2<i32>(textureDimensions(height_m));
     let west = neighbour(at.x, -1, size.x);
     let east = neighbour(at.x, 1, size.x);

@@ -1,6 +1,6 @@
 //! The adapter: opened without a window, and asked for what went wrong instead of letting it end the program.
 
-use wgpu::{Adapter, Device, ErrorFilter, Extent3d, Queue, Texture, TextureFormat};
+use wgpu::{Adapter, Device, ErrorFilter, Extent3d, Queue, Texture, TextureFormat, TextureUsages};
 
 use super::RenderError;
 use crate::grid::{Field, Grid};
@@ -33,6 +33,11 @@ impl Gpu {
         let (device, queue) =
             opened.map_err(|e| RenderError::NoDevice { adapter: name.clone(), cause: e.to_string() })?;
         Ok(Self { device, queue, name })
+    }
+
+    /// A device that somebody else opened, as a window does.
+    pub fn wrap(device: Device, queue: Queue, name: String) -> Self {
+        Self { device, queue, name }
     }
 
     /// The adapter and the interface it is reached by.
@@ -94,11 +99,98 @@ impl Gpu {
 
     /// Reads a texture of one number a cell back.
     pub(super) fn download(&self, texture: &Texture, grid: Grid) -> Result<Field<f32>, RenderError> {
-        let tight = grid.width * 4;
+        let bytes = self.read_pixels(texture)?;
+        let data = bytes.chunks_exact(4).map(|v| f32::from_ne_bytes([v[0], v[1], v[2], v[3]])).collect();
+        Ok(Field { grid, data })
+    }
+}
+
+impl Gpu {
+    /// A texture of a raster and its smaller copies, to be read by shaders.
+    pub(super) fn raster<T: bytemuck::Pod>(
+        &self,
+        label: &str,
+        format: TextureFormat,
+        copies: &[([usize; 2], Vec<T>)],
+    ) -> Texture {
+        let [width, height] = copies.first().map_or([1, 1], |(size, _)| *size);
+        let size = Extent3d { width: width as u32, height: height as u32, depth_or_array_layers: 1 };
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size,
+            mip_level_count: copies.len() as u32,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        for (level, (size, data)) in copies.iter().enumerate() {
+            self.write(&texture, (level as u32, 0), *size, data);
+        }
+        texture
+    }
+
+    /// Writes a mip level of a layer.
+    pub(super) fn write<T: bytemuck::Pod>(
+        &self,
+        texture: &Texture,
+        (level, layer): (u32, u32),
+        [width, height]: [usize; 2],
+        data: &[T],
+    ) {
+        let bytes = bytemuck::cast_slice(data);
+        let into = wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: level,
+            origin: wgpu::Origin3d { x: 0, y: 0, z: layer },
+            aspect: wgpu::TextureAspect::All,
+        };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some((width * size_of::<T>()) as u32),
+            rows_per_image: Some(height as u32),
+        };
+        let size = Extent3d { width: width as u32, height: height as u32, depth_or_array_layers: 1 };
+        self.queue.write_texture(into, bytes, layout, size);
+    }
+
+    /// What a pass draws into.
+    pub(super) fn target(&self, label: &str, [width, height]: [u32; 2], format: TextureFormat, samples: u32) -> Texture {
+        let more = if samples == 1 { TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC } else { TextureUsages::empty() };
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: Extent3d { width: width.max(1), height: height.max(1), depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: samples,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: TextureUsages::RENDER_ATTACHMENT | more,
+            view_formats: &[],
+        })
+    }
+
+    /// A buffer with something in it.
+    pub(super) fn buffer<T: bytemuck::Pod>(&self, label: &str, data: &[T], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: (bytes.len() as u64).next_multiple_of(4).max(4),
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, bytes);
+        buffer
+    }
+
+    /// Reads the bytes of a texture of four bytes a pixel back, row by row.
+    pub(super) fn read_pixels(&self, texture: &Texture) -> Result<Vec<u8>, RenderError> {
+        let (width, height) = (texture.width() as usize, texture.height() as usize);
+        let tight = width * 4;
         let padded = tight.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),
-            size: (padded * grid.height) as u64,
+            size: (padded * height) as u64,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
@@ -106,7 +198,7 @@ impl Gpu {
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded as u32), rows_per_image: None };
         let into = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.copy_texture_to_buffer(texture.as_image_copy(), into, extent(&grid));
+        encoder.copy_texture_to_buffer(texture.as_image_copy(), into, texture.size());
         self.queue.submit([encoder.finish()]);
         let (tell, hear) = std::sync::mpsc::channel();
         buffer.map_async(wgpu::MapMode::Read, .., move |mapped| {
@@ -115,9 +207,7 @@ impl Gpu {
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| self.failed(e))?;
         hear.recv().map_err(|e| self.failed(e))?.map_err(|e| self.failed(e))?;
         let bytes = buffer.get_mapped_range(..).map_err(|e| self.failed(e))?;
-        let rows = bytes.chunks_exact(padded).flat_map(|row| row[..tight].chunks_exact(4));
-        let data = rows.map(|v| f32::from_ne_bytes([v[0], v[1], v[2], v[3]])).collect();
-        Ok(Field { grid, data })
+        Ok(bytes.chunks_exact(padded).flat_map(|row| row[..tight].iter().copied()).collect())
     }
 }
 

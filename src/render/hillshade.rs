@@ -103,7 +103,7 @@ fn draw(gpu: &Gpu, ground: &wgpu::Texture, uniform: &Uniform, light: &wgpu::Text
 }
 
 fn pipeline(gpu: &Gpu) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
-    let shader = gpu.device.create_shader_module(wgpu::include_wgsl!("../../shaders/hillshade.wgsl"));
+    let [cover, shader] = ["cover", "hillshade"].map(|name| gpu.shader(name));
     let entry =
         |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
     // Numbers as they are: many adapters cannot filter 32-bit floats.
@@ -130,8 +130,8 @@ fn pipeline(gpu: &Gpu) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
         label: Some("hillshade"),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
-            module: &shader,
-            entry_point: Some("cover"),
+            module: &cover,
+            entry_point: Some("main"),
             compilation_options: Default::default(),
             buffers: &[],
         },
@@ -140,7 +140,7 @@ fn pipeline(gpu: &Gpu) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module: &shader,
-            entry_point: Some("shade"),
+            entry_point: Some("main"),
             compilation_options: Default::default(),
             targets: &[Some(wgpu::TextureFormat::R32Float.into())],
         }),

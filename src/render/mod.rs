@@ -1,13 +1,36 @@
-//! Pictures of a world on the graphics adapter, off-screen (feature `render`).
+//! Pictures of a world on the graphics adapter, off-screen and in windows (feature `render`).
 //!
-//! This room owns the adapter and the passes; every pass is one file here and one shader of the same name under
-//! `shaders/`. It reads worlds, never changes them, and opens no window.
+//! This room owns the adapter and the passes. A world becomes [`Land`] once (`ground`, `cover`, `shade` make its rasters on the
+//! processor), then [`Renderer`] draws any number of pictures: ground in patches by distance (`terrain`), the block's walls,
+//! the sky (`air`), the sea, glow, and the tone curve that makes a picture of light. What a scene looks like is `scene`'s;
+//! this room reads worlds and scenes, never changes them, and opens no window.
+//!
+//! The scene's axes: x east, y north, z up, metres from the middle of the map, heights times their exaggeration.
 
+mod air;
+mod camera;
+mod cover;
+mod frame;
+mod glow;
 mod gpu;
+mod ground;
 mod hillshade;
+mod land;
+mod passes;
+mod renderer;
+mod sea;
+mod shade;
+mod shader;
+mod terrain;
+mod textures;
 
+pub use camera::Camera;
+pub use frame::{Lights, Moment};
 pub use gpu::Gpu;
+pub use ground::Lie;
 pub use hillshade::{Sun, hillshade};
+pub use land::Land;
+pub use renderer::Renderer;
 
 /// Why there is no picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -36,6 +59,26 @@ pub enum RenderError {
         /// The adapter.
         adapter: String,
         /// Its limit.
+        most: u32,
+    },
+    /// A value is not a number.
+    #[error("layer '{layer}' is not finite at cell ({x}, {y})")]
+    NotFinite {
+        /// The layer.
+        layer: &'static str,
+        /// Column of the cell.
+        x: usize,
+        /// Row of the cell.
+        y: usize,
+    },
+    /// No adapter draws such a picture.
+    #[error("a picture of {width} x {height} pixels cannot be drawn (from 1 to {most} a side)")]
+    PictureSize {
+        /// Pixels.
+        width: u32,
+        /// Pixels.
+        height: u32,
+        /// Most of a side.
         most: u32,
     },
     /// A pass failed.

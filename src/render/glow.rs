@@ -1,0 +1,102 @@
+//! Bloom: what is brighter than white is spread over ever smaller copies of the picture, each blurred one way and then
+//! the other, and their mean is mixed back in. Light is moved, not made.
+
+use super::{
+    Gpu,
+    passes::{LIGHT, Pass, Slot, view},
+};
+use wgpu::{BindGroupLayout, RenderPipeline, Sampler, Texture};
+
+/// Sizes on which light is spread.
+pub(super) const LEVELS: usize = 6;
+/// Standard deviation of each blur, texels of its level.
+const SIGMA: f32 = 1.6;
+
+pub(super) struct Glow {
+    layout: BindGroupLayout,
+    shrink: RenderPipeline,
+    spread: RenderPipeline,
+    add: RenderPipeline,
+    sampler: Sampler,
+}
+
+/// The copies for a picture of one size.
+pub(super) struct Copies {
+    levels: Vec<[Texture; 2]>,
+}
+
+impl Copies {
+    pub fn new(gpu: &Gpu, [width, height]: [u32; 2]) -> Self {
+        let size = |k: usize| [(width >> (k + 1)).max(1), (height >> (k + 1)).max(1)];
+        let levels = (0..LEVELS).take_while(|&k| k == 0 || size(k)[0].min(size(k)[1]) >= 4);
+        Self { levels: levels.map(|k| ["glow", "glow, half blurred"].map(|label| gpu.target(label, size(k), LIGHT, 1))).collect() }
+    }
+
+    /// What is mixed into the picture.
+    pub fn sum(&self) -> &Texture {
+        &self.levels[0][0]
+    }
+}
+
+impl Glow {
+    pub fn new(gpu: &Gpu) -> Self {
+        let layout = gpu.layout(&[Slot::Filtered, Slot::Sampler, Slot::Uniform]);
+        let pass = |shader, blend| gpu.pipeline(&Pass { shaders: ["cover", shader], groups: &[&layout], blend, ..Pass::default() });
+        let part = |src_factor, dst_factor| wgpu::BlendComponent { src_factor, dst_factor, operation: wgpu::BlendOperation::Add };
+        let sum = part(wgpu::BlendFactor::One, wgpu::BlendFactor::One);
+        Self {
+            shrink: pass("shrink", None),
+            spread: pass("spread", None),
+            add: pass("spread", Some(wgpu::BlendState { color: sum, alpha: part(wgpu::BlendFactor::Zero, wgpu::BlendFactor::One) })),
+            sampler: gpu.sampler(wgpu::AddressMode::ClampToEdge, wgpu::AddressMode::ClampToEdge),
+            layout,
+        }
+    }
+
+    /// Spreads the light of a picture.
+    pub fn run(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, from: &Texture, copies: &Copies, [threshold, knee]: [f32; 2]) {
+        let mut draw = |pipeline: &RenderPipeline, from: &Texture, to: &Texture, told: [f32; 4], load| {
+            let uniform = gpu.buffer("glow", &told, wgpu::BufferUsages::UNIFORM);
+            let source = view(from);
+            let resources = vec![
+                wgpu::BindingResource::TextureView(&source),
+                wgpu::BindingResource::Sampler(&self.sampler),
+                uniform.as_entire_binding(),
+            ];
+            let group = gpu.group(&self.layout, resources);
+            let target = view(to);
+            let mut pass = begin(encoder, &target, load);
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.draw(0..3, 0..1);
+        };
+        let clear = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
+        let mut source = from;
+        for (k, [level, half]) in copies.levels.iter().enumerate() {
+            draw(&self.shrink, source, level, [threshold, knee, f32::from(u8::from(k == 0)), 0.0], clear);
+            let step = [1.0 / level.width() as f32, 1.0 / level.height() as f32];
+            draw(&self.spread, level, half, [step[0], 0.0, SIGMA, 1.0], clear);
+            draw(&self.spread, half, level, [0.0, step[1], SIGMA, 1.0], clear);
+            source = level;
+        }
+        for k in (1..copies.levels.len()).rev() {
+            // A tent of the coarser level is added to the finer one.
+            let (from, to) = (&copies.levels[k][0], &copies.levels[k - 1][0]);
+            draw(&self.add, from, to, [0.0, 0.0, 0.5, 1.0], wgpu::LoadOp::Load);
+        }
+    }
+}
+
+fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, target: &'a wgpu::TextureView, load: wgpu::LoadOp<wgpu::Color>) -> wgpu::RenderPass<'a> {
+    let attachment = wgpu::RenderPassColorAttachment {
+        view: target,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+    };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("glow"),
+        color_attachments: &[Some(attachment)],
+        ..Default::default()
+    })
+}

@@ -1,0 +1,116 @@
+//! A world on the adapter: its rasters as textures, the walls of its block, its patches, and the shade of the sun it was last lit by.
+
+use glam::DVec3;
+use half::f16;
+
+use super::{
+    Gpu, RenderError,
+    ground::{Lie, Rasters, copies},
+    passes::{Slot, view},
+    shade::{coarse, sweep},
+    terrain::Quadtree,
+};
+use crate::{grid::Field, scene::SceneParams, world::World};
+use wgpu::TextureFormat;
+
+/// What the ground's shaders read, in the order of `shaders/lib/ground.wgsl`.
+pub(super) const GROUND: [Slot; 7] = [
+    Slot::Numbers,
+    Slot::Filtered,
+    Slot::Filtered,
+    Slot::Filtered,
+    Slot::Filtered,
+    Slot::Filtered,
+    Slot::Numbers,
+];
+/// Cells a side on which shade is worked out, at most.
+const MOST_SHADE: usize = 2048;
+
+/// A world on the adapter.
+pub struct Land {
+    pub(super) lie: Lie,
+    pub(super) tree: Quadtree,
+    pub(super) group: wgpu::BindGroup,
+    /// Corners of the block's walls, two a cell of the rim.
+    pub(super) walls: wgpu::Buffer,
+    pub(super) wall_corners: u32,
+    height: Field<f32>,
+    shade_on: Field<f32>,
+    shade: wgpu::Texture,
+    lit_from: Option<DVec3>,
+}
+
+impl Land {
+    pub(super) fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, world: &World, scene: &SceneParams) -> Result<Self, RenderError> {
+        gpu.check_size(&world.grid)?;
+        let rasters = Rasters::new(world, scene)?;
+        let size = [world.grid.width, world.grid.height];
+        let heights = gpu.raster("heights", TextureFormat::R32Float, &copies(size, rasters.height.data.clone()));
+        let slopes: Vec<_> = copies(size, rasters.slope)
+            .into_iter()
+            .map(|(size, data)| (size, data.iter().map(|v| v.map(f16::from_f32)).collect::<Vec<_>>()))
+            .collect();
+        let slopes = gpu.raster("slopes", TextureFormat::Rg16Float, &slopes);
+        let cover = gpu.raster("cover", TextureFormat::Rgba8UnormSrgb, &copies(size, rasters.cover));
+        let state = gpu.raster("state", TextureFormat::Rgba8Unorm, &copies(size, rasters.state));
+        let shade_on = coarse(&rasters.height, MOST_SHADE);
+        let shade_size = [shade_on.grid.width, shade_on.grid.height];
+        let shade = gpu.raster("shade", TextureFormat::Rg16Float, &[(shade_size, vec![[f16::ZERO; 2]; shade_on.data.len()])]);
+        let glow = gpu.raster("glow", TextureFormat::Rgba16Float, &[([1, 1], vec![[f16::ZERO; 4]])]);
+        let water = gpu.raster("water", TextureFormat::Rg32Float, &[([1, 1], vec![[0.0f32; 2]])]);
+        let views = [&heights, &slopes, &cover, &state, &shade, &glow, &water].map(view);
+        let group = gpu.group(layout, views.iter().map(wgpu::BindingResource::TextureView).collect());
+        let corners = walls(&rasters.height, &rasters.lie);
+        Ok(Self {
+            lie: rasters.lie,
+            tree: Quadtree::new(&rasters.height, rasters.lie),
+            group,
+            walls: gpu.buffer("walls", &corners, wgpu::BufferUsages::VERTEX),
+            wall_corners: corners.len() as u32,
+            height: rasters.height,
+            shade_on,
+            shade,
+            lit_from: None,
+        })
+    }
+
+    /// Works the shade out anew where the light has moved.
+    pub(super) fn light_from(&mut self, gpu: &Gpu, toward: DVec3) {
+        if self.lit_from.is_some_and(|from| from.dot(toward) > 1.0 - 1e-9) {
+            return;
+        }
+        let shade = sweep(&self.shade_on, self.lie.exaggeration, toward.to_array());
+        // Far more than any relief, and small enough for half floats.
+        let data: Vec<[f16; 2]> = shade.iter().map(|s| [s[0].clamp(-6e4, 6e4), s[1].min(6e4)].map(f16::from_f32)).collect();
+        gpu.write(&self.shade, (0, 0), [self.shade_on.grid.width, self.shade_on.grid.height], &data);
+        self.lit_from = Some(toward);
+    }
+
+    /// How the map lies in the scene.
+    pub fn lie(&self) -> &Lie {
+        &self.lie
+    }
+
+    /// Height as drawn at a place of the scene, m; the sea's where that is higher, its rim's beyond the map.
+    pub fn surface(&self, east: f64, north: f64) -> f64 {
+        let [w, h] = self.lie.extent_m;
+        let at = [(east + 0.5 * w).clamp(0.0, w), (0.5 * h - north).clamp(0.0, h)];
+        crate::grid::linear(&self.height, at).max(self.lie.sea_m) * self.lie.exaggeration
+    }
+}
+
+/// The block's walls as a strip around the rim: at each cell the top, then the bottom.
+fn walls(height: &Field<f32>, lie: &Lie) -> Vec<[f32; 4]> {
+    let (w, h) = (height.grid.width, height.grid.height);
+    let rim = (0..w)
+        .map(|x| (x, 0))
+        .chain((1..h).map(|y| (w - 1, y)))
+        .chain((0..w.saturating_sub(1)).rev().map(|x| (x, h - 1)))
+        .chain((0..h.saturating_sub(1)).rev().map(|y| (0, y)));
+    rim.flat_map(|(x, y)| {
+        let east = ((x as f64 + 0.5) / w as f64 - 0.5) * lie.extent_m[0];
+        let north = (0.5 - (y as f64 + 0.5) / h as f64) * lie.extent_m[1];
+        [1.0, 0.0].map(|top| [east as f32, north as f32, height.at(x, y), top])
+    })
+    .collect()
+}
