@@ -1,6 +1,7 @@
 #import light
 #import haze
 #import splat
+#import fire
 
 // Ground: four covers by their shares, lit, in haze.
 
@@ -101,19 +102,18 @@ fn covered(at: vec3<f32>, uv: vec2<f32>, normal: vec3<f32>, away: f32) -> Surfac
     return Surface(mix(varied, SEABED * (0.8 + 0.4 * rough), under), bent);
 }
 
-fn burning(at: vec3<f32>, uv: vec2<f32>, colour: vec3<f32>) -> vec3<f32> {
-    return colour;
-}
-
 @fragment
 fn main(in: Vertex) -> @location(0) vec4<f32> {
     let slope = textureSample(slope_map, smooth_clamp, in.uv).rg * frame.map.w;
     let normal = normalize(vec3<f32>(-slope, 1.0));
     let away = distance(in.at, frame.eye.xyz);
-    let surface = covered(in.at, in.uv, normal, away);
-    let open = textureSampleLevel(state_map, smooth_clamp, in.uv, 0.0).a;
+    var surface = covered(in.at, in.uv, normal, away);
+    let state = textureSampleLevel(state_map, smooth_clamp, in.uv, 0.0);
+    let lava = lava_at(in.at, in.uv, normal, away, state.r);
+    surface.albedo = mix(surface.albedo, lava.albedo, lava.share);
+    surface.normal = normalize(mix(surface.normal, lava.normal, lava.share));
     let sun = sun_share(in.uv, 0.0);
-    var colour = lit(surface.albedo, surface.normal, open, sun);
-    colour = burning(in.at, in.uv, colour);
+    var colour = lit(surface.albedo, surface.normal, state.a, sun);
+    colour += surface.albedo * (1.0 / PI) * fire_light(in.uv, surface.normal) + lava.light;
     return vec4<f32>(hazed(colour, in.at), 1.0);
 }

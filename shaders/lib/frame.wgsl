@@ -37,6 +37,10 @@ struct Frame {
     shallow: vec4<f32>,
     // Glow: brightness from which light is spread, width of the knee there, share that is spread, levels.
     bloom: vec4<f32>,
+    // Lava: share of crust; 1 where there is any to draw; 1 where particles are drawn instead of the map's flows.
+    lava: vec4<f32>,
+    // Light of lava from 400 to 1200 degC in even steps, and how bright that is beside the last.
+    heat: array<vec4<f32>, 17>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::{
     air::{Air, SUN, SkyTable},
     camera::Camera,
+    fire::{HEATS, heats},
     glow::LEVELS,
     ground::Lie,
 };
@@ -36,6 +37,8 @@ pub struct Frame {
     pub dark: [f32; 4],
     pub shallow: [f32; 4],
     pub bloom: [f32; 4],
+    pub lava: [f32; 4],
+    pub heat: [[f32; 4]; HEATS],
 }
 
 /// Irradiance of full moonlight in the units of the sun: far more than nature's four millionths, as a long exposure has it.
@@ -217,6 +220,8 @@ impl Frame {
             shallow: with(colour(&scene.water.light), f64::from(scene.water.octaves)),
             // Brightness is of the picture: what is white at the exposure.
             bloom: [scene.bloom.threshold / exposure, 0.5 * scene.bloom.threshold / exposure, bloom, LEVELS as f64].map(|v| v as f32),
+            lava: [scene.lava.crust as f32, f32::from(u8::from(scene.lava.on)), 0.0, 0.0],
+            heat: heats(&scene.lava, lights.day),
         }
     }
 }

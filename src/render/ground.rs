@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::{RenderError, cover::Covers, shade::sky_share};
+use super::{RenderError, cover::Covers, fire::with_molten, shade::sky_share};
 use crate::{
     grid::Field,
     scene::SceneParams,
@@ -104,7 +104,7 @@ pub struct Rasters {
 impl Rasters {
     /// Those of a world.
     pub fn new(world: &World, scene: &SceneParams) -> Result<Self, RenderError> {
-        let height = world.height();
+        let height = if scene.lava.on { with_molten(world, world.height()) } else { world.height() };
         if let Some((layer, x, y)) = world.first_non_finite() {
             return Err(RenderError::NotFinite { layer: layer.name(), x, y });
         }

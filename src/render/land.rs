@@ -5,16 +5,18 @@ use half::f16;
 
 use super::{
     Gpu, RenderError,
+    fire::{self, Spread},
     ground::{Lie, Rasters, copies},
+    lumps::{self, Lump},
     passes::{Slot, view},
     shade::{coarse, sweep},
     terrain::Quadtree,
 };
-use crate::{grid::Field, scene::SceneParams, world::World};
+use crate::{grid::{Field, Grid}, scene::SceneParams, world::World};
 use wgpu::TextureFormat;
 
 /// What the ground's shaders read, in the order of `shaders/lib/ground.wgsl`.
-pub(super) const GROUND: [Slot; 7] = [
+pub(super) const GROUND: [Slot; 8] = [
     Slot::Numbers,
     Slot::Filtered,
     Slot::Filtered,
@@ -22,6 +24,7 @@ pub(super) const GROUND: [Slot; 7] = [
     Slot::Filtered,
     Slot::Filtered,
     Slot::Numbers,
+    Slot::Filtered,
 ];
 /// Cells a side on which shade is worked out, at most.
 const MOST_SHADE: usize = 2048;
@@ -38,6 +41,13 @@ pub struct Land {
     shade_on: Field<f32>,
     shade: wgpu::Texture,
     lit_from: Option<DVec3>,
+    map: Grid,
+    /// Light of the map's own lava, and the texture of what shines now.
+    own_fire: Vec<[f32; 2]>,
+    fire: wgpu::Texture,
+    /// Particles that are drawn instead of the map's molten lava; whether their light is still to be brought.
+    lumps: Option<Vec<Lump>>,
+    unlit: bool,
 }
 
 impl Land {
@@ -56,9 +66,15 @@ impl Land {
         let shade_on = coarse(&rasters.height, MOST_SHADE);
         let shade_size = [shade_on.grid.width, shade_on.grid.height];
         let shade = gpu.raster("shade", TextureFormat::Rg16Float, &[(shade_size, vec![[f16::ZERO; 2]; shade_on.data.len()])]);
-        let glow = gpu.raster("glow", TextureFormat::Rgba16Float, &[([1, 1], vec![[f16::ZERO; 4]])]);
+        let lava = if scene.lava.on { fire::lava(world) } else { None };
+        let mut spread = Spread::new(&world.grid);
+        lava.iter().for_each(|lava| spread.add_all(&world.grid, lava));
+        let (spread_size, spread) = (spread.size(), spread.spread());
+        let fire = gpu.raster("light of lava", TextureFormat::Rg16Float, &fire::halves(spread_size, spread.clone()));
+        let glow = lava.map_or_else(|| vec![([1, 1], vec![[f16::ZERO; 4]])], |lava| fire::halves(size, lava));
+        let glow = gpu.raster("lava", TextureFormat::Rgba16Float, &glow);
         let water = gpu.raster("water", TextureFormat::Rg32Float, &[([1, 1], vec![[0.0f32; 2]])]);
-        let views = [&heights, &slopes, &cover, &state, &shade, &glow, &water].map(view);
+        let views = [&heights, &slopes, &cover, &state, &shade, &glow, &water, &fire].map(view);
         let group = gpu.group(layout, views.iter().map(wgpu::BindingResource::TextureView).collect());
         let corners = walls(&rasters.height, &rasters.lie);
         Ok(Self {
@@ -71,6 +87,11 @@ impl Land {
             shade_on,
             shade,
             lit_from: None,
+            map: world.grid,
+            own_fire: spread,
+            fire,
+            lumps: None,
+            unlit: false,
         })
     }
 
@@ -84,6 +105,33 @@ impl Land {
         let data: Vec<[f16; 2]> = shade.iter().map(|s| [s[0].clamp(-6e4, 6e4), s[1].min(6e4)].map(f16::from_f32)).collect();
         gpu.write(&self.shade, (0, 0), [self.shade_on.grid.width, self.shade_on.grid.height], &data);
         self.lit_from = Some(toward);
+    }
+
+    /// Draws these particles of lava from now on instead of what the map has of molten lava; or that again.
+    pub fn set_lumps(&mut self, lumps: Option<Vec<Lump>>) {
+        self.unlit |= lumps.is_some() || self.lumps.is_some();
+        self.lumps = lumps;
+    }
+
+    /// The particles.
+    pub(super) fn lumps(&self) -> Option<&[Lump]> {
+        self.lumps.as_deref()
+    }
+
+    /// Works the light of lava out anew where it has changed.
+    pub(super) fn shine(&mut self, gpu: &Gpu) {
+        if !std::mem::take(&mut self.unlit) {
+            return;
+        }
+        let spread = Spread::new(&self.map);
+        let size = spread.size();
+        let light = match &self.lumps {
+            Some(lumps) => lumps::spread(lumps, &self.map).spread(),
+            None => self.own_fire.clone(),
+        };
+        for (level, (size, data)) in fire::halves(size, light).iter().enumerate() {
+            gpu.write(&self.fire, (level as u32, 0), *size, data);
+        }
     }
 
     /// How the map lies in the scene.

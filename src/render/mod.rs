@@ -10,12 +10,14 @@
 mod air;
 mod camera;
 mod cover;
+mod fire;
 mod frame;
 mod glow;
 mod gpu;
 mod ground;
 mod hillshade;
 mod land;
+mod lumps;
 mod passes;
 mod renderer;
 mod sea;
@@ -30,6 +32,7 @@ pub use gpu::Gpu;
 pub use ground::Lie;
 pub use hillshade::{Sun, hillshade};
 pub use land::Land;
+pub use lumps::Lump;
 pub use renderer::Renderer;
 
 /// Why there is no picture.

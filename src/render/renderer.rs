@@ -10,6 +10,7 @@ use super::{
     frame::{Frame, Lights, Moment, Sky},
     glow::{Copies, Glow},
     land::{GROUND, Land},
+    lumps::{self, Felt, Lumps},
     passes::{DEPTH, LIGHT, Pass, Slot, view},
     sea::Sea,
     terrain::{self, Patch, Seen},
@@ -37,6 +38,7 @@ pub struct Renderer {
     sets: [Set; 2],
     tone: RenderPipeline,
     glow: Glow,
+    lumps: Lumps,
     indices: wgpu::Buffer,
     index_count: u32,
     sea: Sea,
@@ -69,6 +71,7 @@ struct Targets {
     depth: Texture,
     picture: Texture,
     copies: Copies,
+    felt: Option<Felt>,
 }
 
 impl Targets {
@@ -81,6 +84,7 @@ impl Targets {
             depth: gpu.target("depth", size, DEPTH, samples),
             picture: gpu.target("picture", size, PICTURE, 1),
             copies: Copies::new(gpu, size),
+            felt: None,
         }
     }
 }
@@ -117,6 +121,7 @@ impl Renderer {
             sets,
             tone,
             glow: Glow::new(&gpu),
+            lumps: Lumps::new(&gpu, [&frame_layout, &ground_layout]),
             indices: gpu.buffer("lattice", &indices, wgpu::BufferUsages::INDEX),
             index_count: indices.len() as u32,
             sea: Sea::new(&gpu),
@@ -152,13 +157,22 @@ impl Renderer {
             self.targets = None;
             self.targets = Some(self.gpu.checked(|| Ok(Targets::new(&self.gpu, moment.size, samples)))?);
         }
+        let felt = scene.lava.on && !scene.lava.spheres && land.lumps().is_some_and(|lumps| !lumps.is_empty());
+        if let (true, Some(targets)) = (felt, &mut self.targets) {
+            let size = targets.size;
+            if targets.felt.is_none() {
+                targets.felt = Some(self.gpu.checked(|| Ok(Felt::new(&self.gpu, size)))?);
+            }
+        }
         self.look_up(scene, moment);
         let (Some(sky), Some(targets)) = (&self.sky, &self.targets) else {
             return Err(self.gpu.failed("its targets are gone"));
         };
         self.gpu.checked(|| {
             land.light_from(&self.gpu, sky.sky.toward);
-            let frame = Frame::new(scene, camera, &sky.lights, &sky.sky, &land.lie, moment);
+            land.shine(&self.gpu);
+            let mut frame = Frame::new(scene, camera, &sky.lights, &sky.sky, &land.lie, moment);
+            frame.lava[2] = f32::from(u8::from(land.lumps().is_some()));
             self.encode(land, scene, camera, moment, &frame, (sky, targets));
             Ok(())
         })?;
@@ -222,6 +236,19 @@ impl Renderer {
             Surround::Sea => true,
             Surround::Block => false,
         };
+        let many = targets.samples > 1;
+        let lumps = land.lumps().filter(|lumps| scene.lava.on && !lumps.is_empty());
+        let lumps = lumps.map(|lumps| {
+            let corners = lumps::corners(lumps, &land.lie, !scene.lava.spheres);
+            let radius = corners.iter().map(|c| c[3]).sum::<f32>() / corners.len() as f32;
+            (gpu.buffer("lava", &corners, wgpu::BufferUsages::VERTEX), corners.len() as u32, radius)
+        });
+        let surface = match (&lumps, &targets.felt) {
+            (Some((buffer, count, radius)), Some(felt)) if !scene.lava.spheres => {
+                Some(self.lumps.make(gpu, &mut encoder, &frame_group, felt, (buffer, *count, *radius)))
+            }
+            _ => None,
+        };
         {
             let mut pass = self.begin(&mut encoder, targets);
             pass.set_bind_group(0, &frame_group, &[]);
@@ -235,6 +262,11 @@ impl Renderer {
                 pass.set_pipeline(&set.side);
                 pass.set_vertex_buffer(0, land.walls.slice(..));
                 pass.draw(0..land.wall_corners, 0..1);
+            }
+            match (&surface, &lumps) {
+                (Some(surface), _) => self.lumps.surface(&mut pass, surface, many),
+                (None, Some((buffer, count, _))) => self.lumps.balls(&mut pass, (buffer, *count), many),
+                (None, None) => {}
             }
             pass.set_pipeline(&set.backdrop);
             pass.draw(0..3, 0..1);

@@ -12,12 +12,13 @@ macro_rules! sources {
 }
 
 /// What is imported.
-const LIBRARY: &[(&str, &str)] = sources!("lib/": "frame", "noise", "sky", "ground", "light", "splat", "haze", "lens", "bright");
+const LIBRARY: &[(&str, &str)] = sources!("lib/": "frame", "noise", "sky", "ground", "light", "splat", "haze", "lens", "bright", "fire", "noise3");
 
 /// What is run.
 pub(super) const ENTRIES: &[(&str, &str)] = sources!("":
     "cover", "hillshade", "ground_vertex", "ground", "side_vertex", "side", "backdrop",
     "sea_vertex", "sea", "shrink", "spread", "tone",
+    "lump_vertex", "lump", "lump_smooth", "lava", "ball",
 );
 
 /// The whole text of an entry.
