@@ -10,6 +10,7 @@ use super::{
     lumps::{self, Lump},
     passes::{Slot, view},
     shade::{coarse, sweep},
+    smoke::Plumes,
     terrain::Quadtree,
 };
 use crate::{grid::{Field, Grid}, scene::SceneParams, world::World};
@@ -42,6 +43,7 @@ pub struct Land {
     shade: wgpu::Texture,
     lit_from: Option<DVec3>,
     map: Grid,
+    pub(super) plumes: Plumes,
     /// Light of the map's own lava, and the texture of what shines now.
     own_fire: Vec<[f32; 2]>,
     fire: wgpu::Texture,
@@ -88,6 +90,7 @@ impl Land {
             shade,
             lit_from: None,
             map: world.grid,
+            plumes: Plumes::of(world),
             own_fire: spread,
             fire,
             lumps: None,

@@ -19,10 +19,12 @@ mod hillshade;
 mod land;
 mod lumps;
 mod passes;
+mod puff;
 mod renderer;
 mod sea;
 mod shade;
 mod shader;
+mod smoke;
 mod terrain;
 mod textures;
 

@@ -13,6 +13,7 @@ use super::{
     lumps::{self, Felt, Lumps},
     passes::{DEPTH, LIGHT, Pass, Slot, view},
     sea::Sea,
+    smoke::{self, Smoke},
     terrain::{self, Patch, Seen},
     textures::Textures,
 };
@@ -39,6 +40,7 @@ pub struct Renderer {
     tone: RenderPipeline,
     glow: Glow,
     lumps: Lumps,
+    smoke: Smoke,
     indices: wgpu::Buffer,
     index_count: u32,
     sea: Sea,
@@ -122,6 +124,7 @@ impl Renderer {
             tone,
             glow: Glow::new(&gpu),
             lumps: Lumps::new(&gpu, [&frame_layout, &ground_layout]),
+            smoke: Smoke::new(&gpu, [&frame_layout, &ground_layout]),
             indices: gpu.buffer("lattice", &indices, wgpu::BufferUsages::INDEX),
             index_count: indices.len() as u32,
             sea: Sea::new(&gpu),
@@ -165,6 +168,15 @@ impl Renderer {
             }
         }
         self.look_up(scene, moment);
+        let puffs = match &self.sky {
+            Some(sky) if scene.smoke.on => {
+                land.plumes.corners(moment.seconds, scene.smoke.density, &land.lie, camera.eye(), sky.sky.toward)
+            }
+            _ => Vec::new(),
+        };
+        if !puffs.is_empty() {
+            self.smoke.prepare(&self.gpu);
+        }
         let (Some(sky), Some(targets)) = (&self.sky, &self.targets) else {
             return Err(self.gpu.failed("its targets are gone"));
         };
@@ -173,7 +185,7 @@ impl Renderer {
             land.shine(&self.gpu);
             let mut frame = Frame::new(scene, camera, &sky.lights, &sky.sky, &land.lie, moment);
             frame.lava[2] = f32::from(u8::from(land.lumps().is_some()));
-            self.encode(land, scene, camera, moment, &frame, (sky, targets));
+            self.encode(land, scene, camera, moment, &frame, (sky, targets, &puffs));
             Ok(())
         })?;
         Ok(&targets.picture)
@@ -208,7 +220,7 @@ impl Renderer {
         camera: &Camera,
         moment: &Moment,
         frame: &Frame,
-        (sky, targets): (&SkyTexture, &Targets),
+        (sky, targets, puffs): (&SkyTexture, &Targets, &[smoke::Corner]),
     ) {
         let gpu = &self.gpu;
         let uniform = gpu.buffer("frame", std::slice::from_ref(frame), wgpu::BufferUsages::UNIFORM);
@@ -243,6 +255,7 @@ impl Renderer {
             let radius = corners.iter().map(|c| c[3]).sum::<f32>() / corners.len() as f32;
             (gpu.buffer("lava", &corners, wgpu::BufferUsages::VERTEX), corners.len() as u32, radius)
         });
+        let smoke = (!puffs.is_empty()).then(|| (gpu.buffer("smoke", puffs, wgpu::BufferUsages::VERTEX), puffs.len() as u32));
         let surface = match (&lumps, &targets.felt) {
             (Some((buffer, count, radius)), Some(felt)) if !scene.lava.spheres => {
                 Some(self.lumps.make(gpu, &mut encoder, &frame_group, felt, (buffer, *count, *radius)))
@@ -273,6 +286,9 @@ impl Renderer {
             if scene.water.sea && land.lie.range_m[0] < land.lie.sea_m {
                 pass.set_pipeline(&set.sea);
                 self.sea.draw(&mut pass, around);
+            }
+            if let Some((buffer, count)) = &smoke {
+                self.smoke.draw(&mut pass, (buffer, *count), many);
             }
         }
         if frame.bloom[2] > 0.0 {

@@ -18,7 +18,7 @@ const LIBRARY: &[(&str, &str)] = sources!("lib/": "frame", "noise", "sky", "grou
 pub(super) const ENTRIES: &[(&str, &str)] = sources!("":
     "cover", "hillshade", "ground_vertex", "ground", "side_vertex", "side", "backdrop",
     "sea_vertex", "sea", "shrink", "spread", "tone",
-    "lump_vertex", "lump", "lump_smooth", "lava", "ball",
+    "lump_vertex", "lump", "lump_smooth", "lava", "ball", "smoke_vertex", "smoke",
 );
 
 /// The whole text of an entry.
