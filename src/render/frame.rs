@@ -43,7 +43,7 @@ const MOON: f64 = 0.012;
 /// Brightness of a night sky without a moon.
 const AIRGLOW: f64 = 0.0009;
 /// Exposure that shows a sunlit lawn as the eye does.
-const EXPOSURE: f64 = 0.26;
+const EXPOSURE: f64 = 0.30;
 
 /// What shines, at a moment of a film.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,8 +103,7 @@ pub struct Sky {
 
 impl Sky {
     /// The sky of sun and moon.
-    pub fn new(lights: &Lights, dust: f64, night: f64) -> Self {
-        let air = Air { dust };
+    pub fn new(air: &Air, lights: &Lights, night: f64) -> Self {
         let (sun, moon) = (lights.sun.to_array(), lights.moon.to_array());
         let moonlight = MOON * night * (1.0 - lights.day);
         let mut table = SkyTable::new(air, &[(sun, SUN), (moon, moonlight * SUN * 0.6)]);

@@ -6,6 +6,7 @@ use wgpu::{AddressMode, BindGroup, BindGroupLayout, BindingResource, RenderPipel
 
 use super::{
     Gpu, RenderError,
+    air::Air,
     camera::Camera,
     frame::{Frame, Lights, Moment, Sky},
     glow::{Copies, Glow},
@@ -40,6 +41,7 @@ pub struct Renderer {
     indices: wgpu::Buffer,
     index_count: u32,
     sea: Sea,
+    air: Option<(f64, Air)>,
     sky: Option<SkyTexture>,
     targets: Option<Targets>,
 }
@@ -124,6 +126,7 @@ impl Renderer {
             ground_layout,
             frame_layout,
             tone_layout,
+            air: None,
             sky: None,
             targets: None,
             gpu,
@@ -180,7 +183,11 @@ impl Renderer {
         if self.sky.as_ref().is_some_and(|sky| sky.lights == lights && sky.told == told) {
             return;
         }
-        let sky = Sky::new(&lights, told[0], told[1]);
+        if self.air.as_ref().is_none_or(|(dust, _)| *dust != told[0]) {
+            self.air = Some((told[0], Air::new(told[0])));
+        }
+        let Some((_, air)) = &self.air else { return };
+        let sky = Sky::new(air, &lights, told[1]);
         let pixels: Vec<[half::f16; 4]> =
             sky.table.light.iter().map(|p| [p[0], p[1], p[2], 1.0].map(half::f16::from_f32)).collect();
         let texture = self.gpu.raster("sky", LIGHT, &[(super::air::SKY_SIZE, pixels)]);
