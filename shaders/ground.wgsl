@@ -36,12 +36,16 @@ fn covered(at: vec3<f32>, uv: vec2<f32>, normal: vec3<f32>, away: f32) -> Surfac
     let state = textureSampleLevel(state_map, smooth_clamp, uv, 0.0);
     let pixel = max(away * frame.eye.w, 0.004);
     let over_sea = at.z - frame.map.z;
-    let coarse = fbm(at.xy / (pixel * 90.0 + frame.air.w * 1.5), 3);
-    let rough = coarse.x * 1.4;
-    var w = shares(over_sea, normal.z, state.r, state.b, rough);
+    // Borders are broken up by noise of some cells and of many pixels; the land's tone varies over larger ones.
+    let size0 = exp2(floor(log2(pixel * 24.0 + frame.air.w * 0.6)));
+    let rough = fbm(at.xy / size0, 4).x * 1.8;
+    let wide = fbm(at.xy / (size0 * 21.0) + 3.7, 3).x;
+    // Where much grows, plants hold what was laid down.
+    var w = shares(over_sea, normal.z, state.r, state.b * (1.0 - 0.9 * cover.a), rough);
     let quality = frame.cover2.w;
-    let old = vec3<f32>(0.95) + 0.30 * rough;
-    let rock_tint = mix(vec3<f32>(0.31, 0.285, 0.26), cover.rgb, 0.28);
+    // Drier and browner here, lusher there.
+    let old = vec3<f32>(1.0, 1.0, 1.0) + vec3<f32>(0.34, 0.16, 0.10) * wide + 0.16 * rough;
+    let rock_tint = bedded(at, mix(vec3<f32>(0.255, 0.24, 0.225), cover.rgb, 0.22), wide, pixel);
     let loose = mix(SAND, GRAVEL, smooth_between(frame.cover.x, 3.0 * frame.cover.x + 1.0, over_sea));
     let sand_tint = mix(loose, cover.rgb, 0.25);
     let under = smooth_between(0.0, -2.0 * frame.cover.x - 1.0, over_sea);
@@ -99,6 +103,16 @@ fn covered(at: vec3<f32>, uv: vec2<f32>, normal: vec3<f32>, away: f32) -> Surfac
         + rock_tint * texels[2].colour * w.z * 1.9 + SNOW * mix(vec3<f32>(1.0), texels[3].colour * 1.9, 0.25) * w.w;
     let varied = mix(albedo * old, albedo, w.w);
     return Surface(mix(varied, SEABED * (0.8 + 0.4 * rough), under), bent);
+}
+
+// Beds of rock, one on the other: hard pale ones and soft dark ones, bent a little; redder where the land is dry.
+fn bedded(at: vec3<f32>, tint: vec3<f32>, wide: f32, pixel: f32) -> vec3<f32> {
+    let thick = max(frame.bands.w, pixel * 6.0);
+    let place = at.z / thick + 2.2 * wide;
+    let band = value_noise(vec2<f32>(place, 7.0)).x * 0.6 + value_noise(vec2<f32>(place * 3.1, 31.0)).x * 0.4;
+    let dry = clamp((tint.r - tint.b) * 7.0 - 0.2, 0.0, 1.0);
+    let red = mix(vec3<f32>(1.0), vec3<f32>(1.12, 0.94, 0.80), dry * (0.5 + 0.5 * band));
+    return tint * red * (1.0 + 0.20 * band);
 }
 
 fn burning(at: vec3<f32>, uv: vec2<f32>, colour: vec3<f32>) -> vec3<f32> {

@@ -8,7 +8,7 @@
 // By height over the sea (drawn), the cosine of the slope, shares of snow and of loose ground by the world's own maps, and
 // a number around zero that breaks the borders up.
 fn shares(over_sea: f32, steep: f32, snow: f32, loose: f32, rough: f32) -> vec4<f32> {
-    let cosine = steep + 0.06 * rough;
+    let cosine = steep + 0.10 * rough;
     let bare = 1.0 - smooth_between(frame.cover.z, frame.cover.y, cosine);
     let held = smooth_between(frame.cover2.y, frame.cover2.x, cosine);
     if (frame.cover2.z == 1.0) {

@@ -266,21 +266,22 @@ fn depth_out(height_m: f64, up: f64) -> Depth {
 /// The whole sky as a table: columns are directions of the compass, rows heights over the horizon, denser near it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkyTable {
-    /// Red, green, blue, row by row from straight down to straight up.
+    /// Columns, from north clockwise, and rows, from straight down to straight up.
+    pub size: [usize; 2],
+    /// Red, green, blue, row by row.
     pub light: Vec<[f32; 3]>,
     /// Light on level ground from the whole sky.
     pub ambient: [f32; 3],
-    /// Light of the sky around the horizon, a mean.
-    pub horizon: [f32; 3],
 }
 
-/// Columns and rows of a [`SkyTable`].
-pub const SKY_SIZE: [usize; 2] = [128, 128];
+/// Columns and rows of the computed sky, and of one from a picture.
+const SKY_SIZE: [usize; 2] = [256, 128];
+const PICTURE_SIZE: [usize; 2] = [2048, 1024];
 
 /// The direction of a row's and a column's middle.
-fn direction(column: usize, row: usize) -> [f64; 3] {
-    let turn = (column as f64 + 0.5) / SKY_SIZE[0] as f64 * std::f64::consts::TAU;
-    let place = (row as f64 + 0.5) / SKY_SIZE[1] as f64 * 2.0 - 1.0;
+fn direction(size: [usize; 2], column: usize, row: usize) -> [f64; 3] {
+    let turn = (column as f64 + 0.5) / size[0] as f64 * std::f64::consts::TAU;
+    let place = (row as f64 + 0.5) / size[1] as f64 * 2.0 - 1.0;
     let over = place * place.abs() * std::f64::consts::FRAC_PI_2;
     let flat = libm::cos(over);
     [libm::sin(turn) * flat, libm::cos(turn) * flat, libm::sin(over)]
@@ -291,7 +292,7 @@ impl SkyTable {
     pub fn new(air: &Air, lights: &[([f64; 3], f64)]) -> Self {
         let [columns, rows] = SKY_SIZE;
         let pixel = |i: usize| {
-            let view = direction(i % columns, i / columns);
+            let view = direction(SKY_SIZE, i % columns, i / columns);
             let mut sum = [0.0f64; 3];
             for &(sun, strength) in lights.iter().filter(|light| light.1 > 0.0) {
                 let light = air.sky(view, sun, strength);
@@ -300,16 +301,34 @@ impl SkyTable {
             sum.map(|v| v as f32)
         };
         let light: Vec<[f32; 3]> = (0..columns * rows).into_par_iter().map(pixel).collect();
-        let ambient = hemisphere(&light);
-        let row = &light[columns * (rows / 2 + rows / 16)..][..columns];
-        let horizon = [0, 1, 2].map(|c: usize| row.iter().map(|p| p[c]).sum::<f32>() / columns as f32);
-        Self { light, ambient, horizon }
+        Self::of(SKY_SIZE, light)
+    }
+
+    /// The sky of a picture of all directions, twice as wide as high, north in its middle; `white` is the light of its white.
+    pub fn picture(image: &image::RgbImage, white: f32) -> Self {
+        let [columns, rows] = PICTURE_SIZE;
+        let (width, height) = image.dimensions();
+        let pixel = |i: usize| {
+            let view = direction(PICTURE_SIZE, i % columns, i / columns);
+            let across = libm::atan2(view[0], view[1]) / std::f64::consts::TAU + 0.5;
+            let down = libm::acos(view[2].clamp(-1.0, 1.0)) / PI;
+            let at = |share: f64, n: u32| ((share * f64::from(n)) as u32).min(n - 1);
+            image.get_pixel(at(across, width), at(down, height)).0.map(|v| {
+                let v = f64::from(v) / 255.0;
+                white * (if v <= 0.04045 { v / 12.92 } else { libm::pow((v + 0.055) / 1.055, 2.4) }) as f32
+            })
+        };
+        Self::of(PICTURE_SIZE, (0..columns * rows).into_par_iter().map(pixel).collect())
+    }
+
+    fn of(size: [usize; 2], light: Vec<[f32; 3]>) -> Self {
+        let ambient = hemisphere(size, &light);
+        Self { size, light, ambient }
     }
 }
 
 /// Light on level ground.
-fn hemisphere(light: &[[f32; 3]]) -> [f32; 3] {
-    let [columns, rows] = SKY_SIZE;
+fn hemisphere([columns, rows]: [usize; 2], light: &[[f32; 3]]) -> [f32; 3] {
     let mut sum = [0.0f64; 3];
     for row in rows / 2..rows {
         let edge = |r: usize| {
@@ -328,6 +347,28 @@ fn hemisphere(light: &[[f32; 3]]) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_picture_of_the_sky_stands_as_it_is_drawn() {
+        // Red in the north, green in the east, blue above, black below.
+        let image = image::RgbImage::from_fn(64, 32, |x, y| {
+            image::Rgb(match (x, y) {
+                (_, 0..8) => [0, 0, 255],
+                (_, 17..) => [0; 3],
+                (24..40, _) => [255, 0, 0],
+                (40..56, _) => [0, 255, 0],
+                _ => [0; 3],
+            })
+        });
+        let sky = SkyTable::picture(&image, 2.0);
+        let at = |turn_deg: f64, over: usize| {
+            let column = (turn_deg / 360.0 * PICTURE_SIZE[0] as f64) as usize;
+            sky.light[(PICTURE_SIZE[1] / 2 + over) * PICTURE_SIZE[0] + column]
+        };
+        assert_eq!([at(0.0, 4), at(90.0, 4), at(200.0, 4)], [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0; 3]]);
+        assert_eq!(at(123.0, 500), [0.0, 0.0, 2.0]);
+        assert!(sky.ambient[2] > sky.ambient[0]);
+    }
 
     fn toward(altitude_deg: f64) -> [f64; 3] {
         let a = altitude_deg.to_radians();
@@ -364,7 +405,7 @@ mod tests {
     #[test]
     fn a_sky_of_one_brightness_gives_pi_times_that() {
         let light = vec![[1.0; 3]; SKY_SIZE[0] * SKY_SIZE[1]];
-        assert!(hemisphere(&light).iter().all(|&v| (f64::from(v) - PI).abs() < 1e-5));
+        assert!(hemisphere(SKY_SIZE, &light).iter().all(|&v| (f64::from(v) - PI).abs() < 1e-5));
     }
 
     #[test]

@@ -11,8 +11,9 @@ use super::{
     frame::{Frame, Lights, Moment, Sky},
     glow::{Copies, Glow},
     land::{GROUND, Land},
-    passes::{DEPTH, LIGHT, Pass, Slot, view},
+    passes::{DEPTH, LIGHT, Pass, Slot, Whole, view},
     sea::Sea,
+    shafts::{Halves, Shafts},
     terrain::{self, Patch, Seen},
     textures::Textures,
 };
@@ -38,6 +39,7 @@ pub struct Renderer {
     sets: [Set; 2],
     tone: RenderPipeline,
     glow: Glow,
+    shafts: Shafts,
     indices: wgpu::Buffer,
     index_count: u32,
     sea: Sea,
@@ -48,7 +50,6 @@ pub struct Renderer {
 
 /// The pipelines of the picture itself.
 struct Set {
-    samples: u32,
     ground: RenderPipeline,
     side: RenderPipeline,
     backdrop: RenderPipeline,
@@ -58,6 +59,7 @@ struct Set {
 struct SkyTexture {
     lights: Lights,
     told: [f64; 2],
+    picture: Option<String>,
     sky: Sky,
     texture: Texture,
 }
@@ -71,6 +73,7 @@ struct Targets {
     depth: Texture,
     picture: Texture,
     copies: Copies,
+    halves: Halves,
 }
 
 impl Targets {
@@ -83,6 +86,7 @@ impl Targets {
             depth: gpu.target("depth", size, DEPTH, samples),
             picture: gpu.target("picture", size, PICTURE, 1),
             copies: Copies::new(gpu, size),
+            halves: Halves::new(gpu, size),
         }
     }
 }
@@ -94,7 +98,7 @@ impl Renderer {
         let frame_layout = gpu.layout(&[Slot::Uniform, Slot::Filtered, Slot::Sampler, Slot::Sampler, Slot::Sampler]);
         let ground_layout = gpu.layout(&GROUND);
         let cover_layout = gpu.layout(&[Slot::Layers, Slot::Layers]);
-        let tone_layout = gpu.layout(&[Slot::Numbers, Slot::Filtered]);
+        let tone_layout = gpu.layout(&[Slot::Numbers, Slot::Filtered, Slot::Filtered]);
         let sets = [1, 4].map(|samples| Set::new(&gpu, samples, [&frame_layout, &ground_layout, &cover_layout]));
         let tone = gpu.pipeline(&Pass {
             shaders: ["cover", "tone"],
@@ -119,6 +123,7 @@ impl Renderer {
             sets,
             tone,
             glow: Glow::new(&gpu),
+            shafts: Shafts::new(&gpu, &frame_layout, &ground_layout),
             indices: gpu.buffer("lattice", &indices, wgpu::BufferUsages::INDEX),
             index_count: indices.len() as u32,
             sea: Sea::new(&gpu),
@@ -155,7 +160,7 @@ impl Renderer {
             self.targets = None;
             self.targets = Some(self.gpu.checked(|| Ok(Targets::new(&self.gpu, moment.size, samples)))?);
         }
-        self.look_up(scene, moment);
+        self.look_up(scene, moment)?;
         let (Some(sky), Some(targets)) = (&self.sky, &self.targets) else {
             return Err(self.gpu.failed("its targets are gone"));
         };
@@ -177,21 +182,24 @@ impl Renderer {
     }
 
     /// The sky of the moment, made anew where it has changed.
-    fn look_up(&mut self, scene: &SceneParams, moment: &Moment) {
+    fn look_up(&mut self, scene: &SceneParams, moment: &Moment) -> Result<(), RenderError> {
         let lights = Lights::at(&scene.sun, moment.share);
         let told = [scene.sky.dust, scene.sky.night];
-        if self.sky.as_ref().is_some_and(|sky| sky.lights == lights && sky.told == told) {
-            return;
+        let picture = &scene.sky.picture;
+        if self.sky.as_ref().is_some_and(|sky| sky.lights == lights && sky.told == told && sky.picture == *picture) {
+            return Ok(());
         }
         if self.air.as_ref().is_none_or(|(dust, _)| *dust != told[0]) {
             self.air = Some((told[0], Air::new(told[0])));
         }
-        let Some((_, air)) = &self.air else { return };
-        let sky = Sky::new(air, &lights, told[1]);
+        let Some((_, air)) = &self.air else { return Ok(()) };
+        let image = picture.as_ref().map(|file| open_sky(file)).transpose()?;
+        let sky = Sky::new(air, &lights, told[1], image.as_ref());
         let pixels: Vec<[half::f16; 4]> =
             sky.table.light.iter().map(|p| [p[0], p[1], p[2], 1.0].map(half::f16::from_f32)).collect();
-        let texture = self.gpu.raster("sky", LIGHT, &[(super::air::SKY_SIZE, pixels)]);
-        self.sky = Some(SkyTexture { lights, told, sky, texture });
+        let texture = self.gpu.raster("sky", LIGHT, &[(sky.table.size, pixels)]);
+        self.sky = Some(SkyTexture { lights, told, picture: picture.clone(), sky, texture });
+        Ok(())
     }
 
     fn encode(
@@ -253,27 +261,12 @@ impl Renderer {
         if frame.bloom[2] > 0.0 {
             self.glow.run(gpu, &mut encoder, &targets.light, &targets.copies, [frame.bloom[0], frame.bloom[1]]);
         }
-        let (light, glow) = (view(&targets.light), view(targets.copies.sum()));
-        let tone_group =
-            gpu.group(&self.tone_layout, vec![BindingResource::TextureView(&light), BindingResource::TextureView(&glow)]);
-        let picture = view(&targets.picture);
-        {
-            let attachment = wgpu::RenderPassColorAttachment {
-                view: &picture,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            };
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("tone"),
-                color_attachments: &[Some(attachment)],
-                ..Default::default()
-            });
-            pass.set_pipeline(&self.tone);
-            pass.set_bind_group(0, &frame_group, &[]);
-            pass.set_bind_group(1, &tone_group, &[]);
-            pass.draw(0..3, 0..1);
+        if frame.rays[0] > 0.0 {
+            self.shafts.run(gpu, &mut encoder, [&frame_group, &land.group], &targets.depth, &targets.halves);
         }
+        let views = [&targets.light, targets.copies.sum(), targets.halves.light()].map(view);
+        let tone_group = gpu.group(&self.tone_layout, views.iter().map(BindingResource::TextureView).collect());
+        Whole { encoder: &mut encoder }.draw(&self.tone, &[&frame_group, &tone_group], &targets.picture, false);
         gpu.queue.submit([encoder.finish()]);
     }
 
@@ -297,6 +290,12 @@ impl Renderer {
             ..Default::default()
         })
     }
+}
+
+/// A picture of the sky.
+fn open_sky(file: &str) -> Result<RgbImage, RenderError> {
+    let picture = crate::world::open_picture(std::path::Path::new(file));
+    Ok(picture.map_err(|e| RenderError::Picture(e.to_string()))?.to_rgb8())
 }
 
 impl Set {
@@ -325,7 +324,6 @@ impl Set {
         };
         let over = Some(wgpu::BlendState::ALPHA_BLENDING);
         Self {
-            samples,
             ground: opaque(["ground_vertex", "ground"], &[frame, ground, covers], &[Some(patches)], false),
             side: opaque(["side_vertex", "side"], &[frame, ground], &[Some(walls)], true),
             backdrop: gpu.pipeline(&Pass {
