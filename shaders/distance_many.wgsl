@@ -6,7 +6,7 @@
 
 @fragment
 fn main(in: Whole) -> @location(0) vec4<f32> {
-    let at = vec2<i32>(in.position.xy) * 2;
+    let at = vec2<i32>(in.position.xy);
     let depth = textureLoad(depth_map, at, 0);
     let clip = vec4<f32>(in.at, max(depth, 1e-9), 1.0);
     let world = frame.from_picture * clip;

@@ -20,7 +20,7 @@ fn forward(cosine: f32, g: f32) -> f32 {
 
 @fragment
 fn main(in: Whole) -> @location(0) vec4<f32> {
-    let seen = textureLoad(distance_map, vec2<i32>(in.position.xy), 0).r;
+    let seen = textureLoad(distance_map, 2 * vec2<i32>(in.position.xy), 0).r;
     let end = frame.from_picture * vec4<f32>(in.at, 0.5, 1.0);
     let view = normalize(end.xyz / end.w - frame.eye.xyz);
     // Beyond a few sides of the map there is no shade to be seen.

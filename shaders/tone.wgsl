@@ -7,6 +7,25 @@
 @group(1) @binding(0) var light_map: texture_2d<f32>;
 @group(1) @binding(1) var glow_sum: texture_2d<f32>;
 @group(1) @binding(2) var shaft_map: texture_2d<f32>;
+@group(1) @binding(3) var distance_map: texture_2d<f32>;
+
+// Of the four half-size texels around a pixel those count that are as far away as it is: edges stay sharp.
+fn shafts(at: vec2<i32>) -> vec3<f32> {
+    let own = textureLoad(distance_map, at, 0).r;
+    let size = vec2<i32>(textureDimensions(shaft_map));
+    let low = (at - 1) / 2;
+    var sum = vec3<f32>(0.0);
+    var weights = 1e-6;
+    for (var k = 0; k < 4; k++) {
+        let texel = min(low + vec2<i32>(k & 1, k >> 1u), size - 1);
+        let off = abs(vec2<f32>(at) - 2.0 * vec2<f32>(texel) - 0.5) * 0.5;
+        let jump = (textureLoad(distance_map, 2 * texel, 0).r - own) / (0.03 * own + 0.01);
+        let w = max((1.0 - off.x) * (1.0 - off.y), 0.02) * max(exp(-jump * jump), 1e-4);
+        sum += w * textureLoad(shaft_map, texel, 0).rgb;
+        weights += w;
+    }
+    return sum / weights;
+}
 
 // The lens: a veil around the sun as bright as what of it is seen, and faint rings on the line through the picture's middle.
 fn glare(at: vec2<f32>) -> vec3<f32> {
@@ -60,7 +79,7 @@ fn main(in: Whole) -> @location(0) vec4<f32> {
         spread += frame.bloom.z * (glow - bright(light, frame.bloom.x, frame.bloom.y));
     }
     if (frame.rays.x > 0.0) {
-        spread += textureSampleLevel(shaft_map, smooth_clamp, uv, 0.0).rgb;
+        spread += shafts(at);
     }
     if (frame.rays.y > 0.0 && frame.bloom.z > 0.0) {
         spread += glare(in.at);

@@ -69,6 +69,8 @@ pub(super) struct Pass<'a> {
     /// Whether it is hidden by what is nearer, and whether it hides what is farther.
     pub depth: Option<bool>,
     pub samples: u32,
+    /// Constants of the fragment shader.
+    pub constants: &'a [(&'a str, f64)],
 }
 
 impl Default for Pass<'_> {
@@ -82,6 +84,7 @@ impl Default for Pass<'_> {
             blend: None,
             depth: None,
             samples: 1,
+            constants: &[],
         }
     }
 }
@@ -157,7 +160,10 @@ impl Gpu {
             fragment: Some(wgpu::FragmentState {
                 module: &fragment,
                 entry_point: Some("main"),
-                compilation_options: Default::default(),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: pass.constants,
+                    ..Default::default()
+                },
                 targets: &[Some(target)],
             }),
             multiview_mask: None,

@@ -15,7 +15,7 @@ use super::{
     sea::Sea,
     shafts::{Halves, Shafts},
     terrain::{self, Patch, Seen},
-    textures::Textures,
+    textures::textures,
 };
 use crate::{
     scene::{Quality, SceneParams, Surround},
@@ -24,6 +24,8 @@ use crate::{
 
 /// Format of pictures: sRGB, eight bits.
 const PICTURE: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+/// Samples a pixel for draft, normal and full quality: edges are smooth in the latter two.
+const SAMPLES: [u32; 3] = [1, 4, 4];
 /// Most pixels of a side of a picture, besides the adapter's own limit.
 const MOST_PX: u32 = 16_384;
 
@@ -35,8 +37,8 @@ pub struct Renderer {
     tone_layout: BindGroupLayout,
     covers: BindGroup,
     samplers: [wgpu::Sampler; 3],
-    /// Pipelines for one and for four samples a pixel.
-    sets: [Set; 2],
+    /// Pipelines for draft, normal and full quality.
+    sets: [Set; 3],
     tone: RenderPipeline,
     glow: Glow,
     shafts: Shafts,
@@ -97,25 +99,20 @@ impl Renderer {
         gpu.checked(|| Ok(()))?;
         let frame_layout = gpu.layout(&[Slot::Uniform, Slot::Filtered, Slot::Sampler, Slot::Sampler, Slot::Sampler]);
         let ground_layout = gpu.layout(&GROUND);
-        let cover_layout = gpu.layout(&[Slot::Layers, Slot::Layers]);
-        let tone_layout = gpu.layout(&[Slot::Numbers, Slot::Filtered, Slot::Filtered]);
-        let sets = [1, 4].map(|samples| Set::new(&gpu, samples, [&frame_layout, &ground_layout, &cover_layout]));
+        let cover_layout = gpu.layout(&[Slot::Layers]);
+        let tone_layout = gpu.layout(&[Slot::Numbers, Slot::Filtered, Slot::Numbers, Slot::Numbers]);
+        let sets = [0, 1, 2].map(|quality| Set::new(&gpu, quality, [&frame_layout, &ground_layout, &cover_layout]));
         let tone = gpu.pipeline(&Pass {
             shaders: ["cover", "tone"],
             groups: &[&frame_layout, &tone_layout],
             format: PICTURE,
             ..Pass::default()
         });
-        let textures = Textures::new(&gpu);
-        let layers = |texture: &Texture| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2Array),
-                ..Default::default()
-            })
-        };
-        let (colours, slopes) = (layers(&textures.colours), layers(&textures.slopes));
-        let covers =
-            gpu.group(&cover_layout, vec![BindingResource::TextureView(&colours), BindingResource::TextureView(&slopes)]);
+        let textures = textures(&gpu).create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        let covers = gpu.group(&cover_layout, vec![BindingResource::TextureView(&textures)]);
         let indices = terrain::indices();
         let (clamp, repeat) = (AddressMode::ClampToEdge, AddressMode::Repeat);
         Ok(Self {
@@ -155,7 +152,7 @@ impl Renderer {
         if width == 0 || height == 0 || width.max(height) > most {
             return Err(RenderError::PictureSize { width, height, most });
         }
-        let samples = if moment.quality == Quality::Draft { 1 } else { 4 };
+        let samples = SAMPLES[moment.quality as usize];
         if self.targets.as_ref().is_none_or(|t| t.size != moment.size || t.samples != samples) {
             self.targets = None;
             self.targets = Some(self.gpu.checked(|| Ok(Targets::new(&self.gpu, moment.size, samples)))?);
@@ -223,14 +220,14 @@ impl Renderer {
             eye: camera.eye(),
             pixels: camera.pixels_per_radian(height),
             most_px: match moment.quality {
-                Quality::Draft => 9.0,
-                Quality::Normal => 4.0,
-                Quality::Full => 2.5,
+                Quality::Draft => 16.0,
+                Quality::Normal => 8.0,
+                Quality::Full => 6.0,
             },
         };
-        let patches = land.tree.select(&seen);
+        let patches = land.tree.select(&seen); if std::env::var("LIVE_SHADERS").is_ok() { eprintln!("patches {}", patches.len()); } // DEV-ONLY
         let patch_buffer = gpu.buffer("patches", &patches, wgpu::BufferUsages::VERTEX);
-        let set = &self.sets[usize::from(targets.samples > 1)];
+        let set = &self.sets[moment.quality as usize];
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let around = match scene.surround {
             Surround::Auto => land.lie.rim_at_sea,
@@ -264,7 +261,7 @@ impl Renderer {
         if frame.rays[0] > 0.0 {
             self.shafts.run(gpu, &mut encoder, [&frame_group, &land.group], &targets.depth, &targets.halves);
         }
-        let views = [&targets.light, targets.copies.sum(), targets.halves.light()].map(view);
+        let views = [&targets.light, targets.copies.sum(), targets.halves.light(), targets.halves.distance()].map(view);
         let tone_group = gpu.group(&self.tone_layout, views.iter().map(BindingResource::TextureView).collect());
         Whole { encoder: &mut encoder }.draw(&self.tone, &[&frame_group, &tone_group], &targets.picture, false);
         gpu.queue.submit([encoder.finish()]);
@@ -299,7 +296,9 @@ fn open_sky(file: &str) -> Result<RgbImage, RenderError> {
 }
 
 impl Set {
-    fn new(gpu: &Gpu, samples: u32, [frame, ground, covers]: [&BindGroupLayout; 3]) -> Self {
+    fn new(gpu: &Gpu, quality: usize, [frame, ground, covers]: [&BindGroupLayout; 3]) -> Self {
+        let samples = SAMPLES[quality];
+        let constants = &[("QUALITY", quality as f64)];
         let attribute = |location, offset, format| wgpu::VertexAttribute { format, offset, shader_location: location };
         let patches = [attribute(0, 0, VertexFormat::Float32x4), attribute(1, 16, VertexFormat::Float32x4)];
         let patches = wgpu::VertexBufferLayout {
@@ -319,13 +318,26 @@ impl Set {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &corners,
         };
-        let opaque = |shaders, groups: &[&BindGroupLayout], vertices: &[Option<wgpu::VertexBufferLayout>], strip| {
-            gpu.pipeline(&Pass { shaders, groups, vertices, strip, depth: Some(true), samples, ..Pass::default() })
-        };
         let over = Some(wgpu::BlendState::ALPHA_BLENDING);
         Self {
-            ground: opaque(["ground_vertex", "ground"], &[frame, ground, covers], &[Some(patches)], false),
-            side: opaque(["side_vertex", "side"], &[frame, ground], &[Some(walls)], true),
+            ground: gpu.pipeline(&Pass {
+                shaders: ["ground_vertex", "ground"],
+                groups: &[frame, ground, covers],
+                vertices: &[Some(patches)],
+                depth: Some(true),
+                samples,
+                constants,
+                ..Pass::default()
+            }),
+            side: gpu.pipeline(&Pass {
+                shaders: ["side_vertex", "side"],
+                groups: &[frame, ground],
+                vertices: &[Some(walls)],
+                strip: true,
+                depth: Some(true),
+                samples,
+                ..Pass::default()
+            }),
             backdrop: gpu.pipeline(&Pass {
                 shaders: ["cover", "backdrop"],
                 groups: &[frame],

@@ -28,7 +28,12 @@ impl Halves {
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
         let half = size.map(|n| n.div_ceil(2));
         let light = ["shafts", "shafts, half blurred"].map(|label| gpu.target(label, half, LIGHT, 1));
-        Self { distance: gpu.target("distance", half, TextureFormat::R32Float, 1), light }
+        Self { distance: gpu.target("distance", size, TextureFormat::R32Float, 1), light }
+    }
+
+    /// How far away each pixel is, m.
+    pub fn distance(&self) -> &Texture {
+        &self.distance
     }
 
     /// The light that is added to the picture.

@@ -80,7 +80,7 @@ impl Quadtree {
     /// picture; a patch must fit in the range, or its edges would not meet.
     fn range_m(&self, level: usize, seen: &Seen) -> f64 {
         let by_size = 2.0 * self.lie.cell_m * seen.pixels / seen.most_px;
-        let by_patch = self.lie.cell_m * PATCH as f64 * 5.0;
+        let by_patch = self.lie.cell_m * PATCH as f64 * 3.2;
         by_size.max(by_patch) * (1u64 << level) as f64
     }
 
