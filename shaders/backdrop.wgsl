@@ -45,8 +45,8 @@ fn moon_face(view: vec3<f32>) -> vec3<f32> {
 fn main(in: Whole) -> @location(0) vec4<f32> {
     let far = frame.from_picture * vec4<f32>(in.at, 1.0, 1.0);
     let view = normalize(far.xyz / far.w - frame.eye.xyz);
-    // Under the horizon there is only haze.
-    let level = normalize(vec3<f32>(view.xy, max(view.z, 0.004)));
+    // Under the horizon there is only haze, paler downwards as in a studio.
+    let level = normalize(vec3<f32>(view.xy, max(view.z, 0.025 - 0.25 * min(view.z, 0.0))));
     var colour = sky_light(level);
     let above = smooth_between(-0.004, 0.004, view.z);
     let night = frame.moon.w * (1.0 - frame.sun.w);

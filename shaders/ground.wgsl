@@ -26,89 +26,96 @@ struct Surface {
     normal: vec3<f32>,
 }
 
-// Where the ground is seen from above its texture lies flat; on steep ground it is laid from two sides.
-fn side_weights(normal: vec3<f32>) -> vec3<f32> {
-    let w = pow(abs(normal), vec3<f32>(6.0));
-    return w / (w.x + w.y + w.z);
+// 0 draft, 1 normal, 2 full; a pipeline each, since a processor that draws runs both ways of every branch.
+override QUALITY: u32 = 2u;
+
+// Sand, gravel or what grows, by the map and the height over the sea.
+fn tints(at: vec3<f32>, cover: vec3<f32>, over_sea: f32) -> array<vec3<f32>, 3> {
+    let rock = mix(vec3<f32>(0.255, 0.24, 0.225), cover, 0.22);
+    let loose = mix(SAND, GRAVEL, smooth_between(frame.cover.x, 3.0 * frame.cover.x + 1.0, over_sea));
+    return array<vec3<f32>, 3>(mix(loose, cover, 0.25), cover, rock);
 }
 
-fn covered(at: vec3<f32>, uv: vec2<f32>, normal: vec3<f32>, away: f32) -> Surface {
-    let cover = textureSampleLevel(cover_map, smooth_clamp, uv, 0.0);
-    let state = textureSampleLevel(state_map, smooth_clamp, uv, 0.0);
+fn under_water(over_sea: f32) -> f32 {
+    return smooth_between(0.0, -2.0 * frame.cover.x - 1.0, over_sea);
+}
+
+fn plain(at: vec3<f32>, uv: vec2<f32>, normal: vec3<f32>, state: vec4<f32>, mip: f32) -> Surface {
+    let cover = textureSampleLevel(cover_map, smooth_clamp, uv, mip);
+    let over_sea = at.z - frame.map.z;
+    let w = shares(over_sea, normal.z, state.r, state.b * (1.0 - 0.9 * cover.a), 0.0);
+    let tint = tints(at, cover.rgb, over_sea);
+    let albedo = tint[0] * w.x + tint[1] * w.y + tint[2] * w.z + SNOW * w.w;
+    return Surface(mix(albedo, SEABED, under_water(over_sea)), normal);
+}
+
+fn covered(at: vec3<f32>, uv: vec2<f32>, normal: vec3<f32>, state: vec4<f32>, away: f32, mip: f32) -> Surface {
+    let cover = textureSampleLevel(cover_map, smooth_clamp, uv, mip);
     let pixel = max(away * frame.eye.w, 0.004);
     let over_sea = at.z - frame.map.z;
-    let coarse = fbm(at.xy / (pixel * 90.0 + frame.air.w * 1.5), 3);
-    let rough = coarse.x * 1.4;
-    var w = shares(over_sea, normal.z, state.r, state.b, rough);
-    let quality = frame.cover2.w;
-    let old = vec3<f32>(0.95) + 0.30 * rough;
-    let rock_tint = mix(vec3<f32>(0.31, 0.285, 0.26), cover.rgb, 0.28);
-    let loose = mix(SAND, GRAVEL, smooth_between(frame.cover.x, 3.0 * frame.cover.x + 1.0, over_sea));
-    let sand_tint = mix(loose, cover.rgb, 0.25);
-    let under = smooth_between(0.0, -2.0 * frame.cover.x - 1.0, over_sea);
-    if (quality < 0.5) {
-        let plain = (sand_tint * w.x + cover.rgb * w.y + rock_tint * w.z) * old + SNOW * w.w;
-        return Surface(mix(plain, SEABED, under), normal);
-    }
+    // Borders are broken up by noise of some cells and of many pixels; the land's tone varies over larger ones.
+    let patches = exp2(floor(log2(pixel * 24.0 + frame.air.w * 0.6)));
+    let rough = fbm(at.xy / patches, 4).x * 1.8;
+    let wide = fbm(at.xy / (patches * 21.0) + 3.7, 3).x;
+    // Where much grows, plants hold what was laid down.
+    var w = shares(over_sea, normal.z, state.r, state.b * (1.0 - 0.9 * cover.a), rough);
+    var tint = tints(at, cover.rgb, over_sea);
+    tint[2] = bedded(at, tint[2], wide, pixel);
     let level = log2(pixel);
     let whole = floor(level);
     let size = TEXTURE_SIDE * TEXELS_PER_PIXEL * exp2(whole);
     let share = level - whole;
     let toward = normalize(frame.eye.xyz - at);
     let blur = clamp(-0.7 * log2(max(dot(toward, normal), 0.05)), 0.0, 2.5);
-    let sides = side_weights(normal);
-    var texels: array<Texel, 4>;
-    var slopes: array<vec3<f32>, 4>;
-    for (var k = 0; k < 4; k++) {
-        texels[k] = Texel(vec3<f32>(1.0), -0.5, vec2<f32>(0.0));
-        slopes[k] = vec3<f32>(0.0);
-        if (w[k] < 0.004) { continue; }
-        var t = Texel(vec3<f32>(0.0), 0.0, vec2<f32>(0.0));
-        var slope = vec3<f32>(0.0);
-        let top = select(sides.z, 1.0, k == 3 || k == 0);
-        if (top > 0.03) {
-            let seen = sized(k, at.xy, size, share, blur);
-            t = Texel(seen.colour * top, seen.height * top, vec2<f32>(0.0));
-            slope += top * vec3<f32>(seen.slope, 0.0);
-        }
-        if (top < 1.0) {
-            if (sides.x > 0.03) {
-                let seen = sized(k, at.yz, size, share, blur);
-                t = Texel(t.colour + seen.colour * sides.x, t.height + seen.height * sides.x, vec2<f32>(0.0));
-                slope += sides.x * vec3<f32>(0.0, seen.slope);
-            }
-            if (sides.y > 0.03) {
-                let seen = sized(k, at.xz, size, share, blur);
-                t = Texel(t.colour + seen.colour * sides.y, t.height + seen.height * sides.y, vec2<f32>(0.0));
-                slope += sides.y * vec3<f32>(seen.slope.x, 0.0, seen.slope.y);
-            }
-        }
-        texels[k] = t;
-        slopes[k] = slope;
-    }
+    let sand = sized(0, at.xy, size, share, blur);
+    let grass = sized(1, at.xy, size, share, blur);
+    let snow = sized(3, at.xy, size, share, blur);
+    // Rock is steep: it is laid from above and from two sides, by the cube of how it faces them.
+    let faces = normal * normal * normal * normal;
+    let sides = faces / (faces.x + faces.y + faces.z);
+    let top = sized(2, at.xy, size, share, blur);
+    let east = sized(2, at.yz, size, share, blur);
+    let north = sized(2, at.xz, size, share, blur);
+    let rock = sides.z * top + sides.x * east + sides.y * north;
+    let rock_slope = sides.z * vec3<f32>(top.xy, 0.0) + sides.x * vec3<f32>(0.0, east.xy) + sides.y * vec3<f32>(north.x, 0.0, north.y);
     // What stands higher lies on top where two meet.
-    var top = 0.0;
-    for (var k = 0; k < 4; k++) { top = max(top, w[k] * (1.0 + 1.2 * texels[k].height)); }
-    for (var k = 0; k < 4; k++) { w[k] = w[k] * max(w[k] * (1.0 + 1.2 * texels[k].height) - top + 0.45, 0.0); }
+    let heights = vec4<f32>(sand.z, grass.z, rock.z, snow.z);
+    let raised = w * (1.0 + 1.2 * heights);
+    let highest = max(max(raised.x, raised.y), max(raised.z, raised.w));
+    w = w * max(raised - highest + 0.45, vec4<f32>(0.0));
     w = w / max(w.x + w.y + w.z + w.w, 1e-5);
     // Where a pixel is larger than a cell, the land's own relief is all there is to see.
     let fine = mix(0.3, 1.0, clamp(frame.air.w / pixel * 0.6, 0.0, 1.0)) * frame.cover.w;
-    var slope = vec3<f32>(0.0);
-    for (var k = 0; k < 4; k++) { slope += w[k] * ROUGH[k] * fine * slopes[k]; }
+    let flat_slope = w.x * ROUGH.x * sand.xy + w.y * ROUGH.y * grass.xy + w.w * ROUGH.w * snow.xy;
+    let slope = fine * (vec3<f32>(flat_slope, 0.0) + w.z * ROUGH.z * rock_slope);
     let bent = normalize(normal - (slope - dot(slope, normal) * normal));
-    let albedo = sand_tint * texels[0].colour * w.x * 1.9 + cover.rgb * texels[1].colour * w.y * 1.9
-        + rock_tint * texels[2].colour * w.z * 1.9 + SNOW * mix(vec3<f32>(1.0), texels[3].colour * 1.9, 0.25) * w.w;
-    let varied = mix(albedo * old, albedo, w.w);
-    return Surface(mix(varied, SEABED * (0.8 + 0.4 * rough), under), bent);
+    // Drier and browner here, lusher there.
+    let tone = vec3<f32>(1.0) + vec3<f32>(0.34, 0.16, 0.10) * wide + 0.16 * rough;
+    let soil = tint[0] * (w.x * sand.w) + tint[1] * (w.y * grass.w) + tint[2] * (w.z * rock.w);
+    let albedo = soil * tone + SNOW * (w.w * mix(1.0, snow.w, 0.25));
+    return Surface(mix(albedo, SEABED * (0.8 + 0.4 * rough), under_water(over_sea)), bent);
+}
+
+// Beds of rock, one on the other: hard pale ones and soft dark ones, bent a little; redder where the land is dry.
+fn bedded(at: vec3<f32>, tint: vec3<f32>, wide: f32, pixel: f32) -> vec3<f32> {
+    let thick = max(frame.bands.w, pixel * 6.0);
+    let place = at.z / thick + 2.2 * wide;
+    let band = value_noise(vec2<f32>(place, 7.0)).x * 0.6 + value_noise(vec2<f32>(place * 3.1, 31.0)).x * 0.4;
+    let dry = clamp((tint.r - tint.b) * 7.0 - 0.2, 0.0, 1.0);
+    let red = mix(vec3<f32>(1.0), vec3<f32>(1.12, 0.94, 0.80), dry * (0.5 + 0.5 * band));
+    return tint * red * (1.0 + 0.20 * band);
 }
 
 @fragment
 fn main(in: Vertex) -> @location(0) vec4<f32> {
-    let slope = textureSample(slope_map, smooth_clamp, in.uv).rg * frame.map.w;
-    let normal = normalize(vec3<f32>(-slope, 1.0));
     let away = distance(in.at, frame.eye.xyz);
-    var surface = covered(in.at, in.uv, normal, away);
-    let state = textureSampleLevel(state_map, smooth_clamp, in.uv, 0.0);
+    // The smaller copy whose texels are as large as a pixel, a little sharper than that.
+    let mip = max(log2(away * frame.eye.w / frame.air.w), 0.0);
+    let slope = textureSampleLevel(slope_map, smooth_clamp, in.uv, mip).rg * frame.map.w;
+    let state = textureSampleLevel(state_map, smooth_clamp, in.uv, mip);
+    let normal = normalize(vec3<f32>(-slope, 1.0));
+    var surface = plain(in.at, in.uv, normal, state, mip);
+    if (QUALITY > 0u) { surface = covered(in.at, in.uv, normal, state, away, mip); }
     let lava = lava_at(in.at, in.uv, normal, away, state.r);
     surface.albedo = mix(surface.albedo, lava.albedo, lava.share);
     surface.normal = normalize(mix(surface.normal, lava.normal, lava.share));

@@ -50,7 +50,13 @@ fn main(in: Whole) -> Shown {
     let sun = sun_share(uv, max(at.z - height_at(uv, 0), 0.0));
     let albedo = frozen_colour(0.12) * (1.0 + 0.5 * rough.x);
     var colour = lit(albedo, bent, 1.0, sun) + albedo * (1.0 / PI) * fire_light(uv, bent);
-    colour += melt_light(at.xy, wide, drift_of(normal), here.g);
+    colour += melt_light(at.xy, wide, drift_at(uv), here.g);
     let seen = frame.view_projection * vec4<f32>(at, 1.0);
-    return Shown(vec4<f32>(hazed(colour, at), 1.0), seen.z / seen.w);
+    // Its rim is as soft as a pixel.
+    var around = 0.0;
+    for (var k = 0; k < 9; k++) {
+        let there = vec2<i32>(pixel) + vec2<i32>(k % 3, k / 3) - 1;
+        around += select(0.0, 1.0, textureLoad(felt, max(there, vec2<i32>(0)), 0).r > 0.0);
+    }
+    return Shown(vec4<f32>(hazed(colour, at), smooth_between(1.0, 7.0, around)), seen.z / seen.w);
 }

@@ -56,7 +56,8 @@ fn main(in: Vertex) -> @location(0) vec4<f32> {
     let shade = sun_share(map, max(over, 0.0));
     let direct = frame.light.rgb * (reach * shade * (facing * (0.4 + 0.6 * t.b) + through));
     let sky = frame.ambient.rgb * (0.35 + 0.65 * exp(-0.35 * in.depth.y)) * (0.6 + 0.4 * normal.z) * t.b;
-    let below = in.fire * (0.55 - 0.45 * normal.z) * (0.4 + 0.6 * t.b);
+    let under = clamp(0.55 - 0.6 * normal.z, 0.0, 1.0);
+    let below = in.fire * (0.8 * under * (0.12 + 0.88 * t.b * t.b));
     let colour = albedo * (1.0 / PI) * (direct + sky) + mix(albedo, vec3<f32>(0.35), 0.6) * (1.0 / PI) * below;
     return vec4<f32>(hazed(colour, in.at) * alpha, alpha);
 }

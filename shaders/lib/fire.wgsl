@@ -73,7 +73,7 @@ fn drifting(at: vec2<f32>, size: f32, flow: vec2<f32>, open: f32) -> vec2<f32> {
 // Light that molten lava gives off at a place of the map: crust where it has cooled, cracks between its plates.
 fn melt_light(at: vec2<f32>, pixel: f32, flow: vec2<f32>, degc: f32) -> vec3<f32> {
     let crust = frame.lava.x;
-    let level = log2(max(pixel * 14.0, 0.35));
+    let level = log2(max(pixel * 17.0, 0.35));
     let whole = floor(level);
     let size = exp2(whole);
     let share = smooth_between(0.25, 0.75, level - whole);
@@ -89,10 +89,11 @@ fn melt_light(at: vec2<f32>, pixel: f32, flow: vec2<f32>, degc: f32) -> vec3<f32
     return mix(heat_light(min(skin, degc)).rgb, core, seen.x * mix(1.0, 0.75 + 0.6 * broad, min(shut, 1.0)));
 }
 
-// Which way lava runs: downhill, faster where it is steep.
-fn drift_of(normal: vec3<f32>) -> vec2<f32> {
-    let steep = length(normal.xy);
-    return normal.xy / max(steep, 1e-4) * min(0.25 + 3.0 * steep, 1.5) * smooth_between(0.0, 0.02, steep);
+// Which way lava runs: down the ground's broad slope, faster where it is steep.
+fn drift_at(uv: vec2<f32>) -> vec2<f32> {
+    let slope = -textureSampleLevel(slope_map, smooth_clamp, uv, 2.0).rg;
+    let steep = length(slope);
+    return slope / max(steep, 1e-4) * min(0.25 + 2.0 * steep, 1.2) * smooth_between(0.0, 0.02, steep);
 }
 
 // Rock by the code of its age: black glass when fresh, grey-brown when old.
@@ -123,7 +124,7 @@ fn lava_at(at: vec3<f32>, uv: vec2<f32>, normal: vec3<f32>, away: f32, snow: f32
         let degc = map.g / max(map.r, 1e-3);
         // A flow's margin has cooled.
         let edge = 1.0 - smooth_between(0.0, 1.0, molten);
-        out.light = melt_light(at.xy, pixel, drift_of(normal), degc - 220.0 * edge) * smooth_between(0.0, 0.5, molten);
+        out.light = melt_light(at.xy, pixel, drift_at(uv), degc - 220.0 * edge) * smooth_between(0.0, 0.5, molten);
     }
     return out;
 }

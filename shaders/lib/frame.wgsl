@@ -28,7 +28,8 @@ struct Frame {
     cover: vec4<f32>,
     // Cosines at which snow begins to slide and has gone; style; quality (0 draft, 1 normal, 2 full).
     cover2: vec4<f32>,
-    // Bands: drawn heights of rock and snow over the sea, half the width of their borders; 1 where the map has rivers.
+    // Bands: drawn heights of rock and snow over the sea, half the width of their borders; thickness of
+    // beds of rock.
     bands: vec4<f32>,
     // Water: clarity, m; height of waves; length of the longest, m; foam.
     water: vec4<f32>,
@@ -37,6 +38,8 @@ struct Frame {
     shallow: vec4<f32>,
     // Glow: brightness from which light is spread, width of the knee there, share that is spread, levels.
     bloom: vec4<f32>,
+    // Strength of shafts of light, of the lens's glare.
+    rays: vec4<f32>,
     // Lava: share of crust; 1 where there is any to draw; 1 where particles are drawn instead of the map's flows.
     lava: vec4<f32>,
     // Light of lava from 400 to 1200 degC in even steps, and how bright that is beside the last.

@@ -2,13 +2,12 @@
 #import noise
 
 // What covers the ground: shares of sand, grass (whatever grows, or bare soil), rock and snow that add up to one.
-@group(2) @binding(0) var colour_textures: texture_2d_array<f32>;
-@group(2) @binding(1) var relief_textures: texture_2d_array<f32>;
+@group(2) @binding(0) var textures: texture_2d_array<f32>;
 
 // By height over the sea (drawn), the cosine of the slope, shares of snow and of loose ground by the world's own maps, and
 // a number around zero that breaks the borders up.
 fn shares(over_sea: f32, steep: f32, snow: f32, loose: f32, rough: f32) -> vec4<f32> {
-    let cosine = steep + 0.06 * rough;
+    let cosine = steep + 0.10 * rough;
     let bare = 1.0 - smooth_between(frame.cover.z, frame.cover.y, cosine);
     let held = smooth_between(frame.cover2.y, frame.cover2.x, cosine);
     if (frame.cover2.z == 1.0) {
@@ -35,28 +34,10 @@ fn bands(over_sea: f32, bare: f32, held: f32) -> vec4<f32> {
     return vec4<f32>(w.x, w.y * (1.0 - bare), w.z + w.y * bare + slid, w.w - slid);
 }
 
-struct Texel {
-    // Share of the layer's colour.
-    colour: vec3<f32>,
-    // Height, -0.5 to 0.5.
-    height: f32,
-    // Slope across and up the texture.
-    slope: vec2<f32>,
-}
-
-fn texel(layer: i32, at: vec2<f32>, level: f32) -> Texel {
-    let c = textureSampleLevel(colour_textures, smooth_repeat, at, layer, level);
-    let r = textureSampleLevel(relief_textures, smooth_repeat, at, layer, level);
-    return Texel(c.rgb, c.a - 0.5, r.rg * 2.0 - 1.0);
-}
-
-fn mixed(a: Texel, b: Texel, t: f32) -> Texel {
-    return Texel(mix(a.colour, b.colour, t), mix(a.height, b.height, t), mix(a.slope, b.slope, t));
-}
-
-// A layer at the two sizes whose texels are nearest to a pixel's: whatever the distance, there is detail of its size.
-fn sized(layer: i32, at: vec2<f32>, size: f32, share: f32, level: f32) -> Texel {
-    let a = texel(layer, at / size, level);
-    let b = texel(layer, at / (2.0 * size) + 0.37, level);
-    return mixed(a, b, share);
+// A layer at the two sizes whose texels are nearest to a pixel's: whatever the distance, there is detail of its size. Slope
+// across and up, height around zero, brightness around one.
+fn sized(layer: i32, at: vec2<f32>, size: f32, share: f32, level: f32) -> vec4<f32> {
+    let a = textureSampleLevel(textures, smooth_repeat, at / size, layer, level);
+    let b = textureSampleLevel(textures, smooth_repeat, at / (2.0 * size) + 0.37, layer, level);
+    return mix(a, b, share) * vec4<f32>(2.0, 2.0, 1.0, 2.0) - vec4<f32>(1.0, 1.0, 0.5, 0.0);
 }

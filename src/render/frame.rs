@@ -37,6 +37,7 @@ pub struct Frame {
     pub dark: [f32; 4],
     pub shallow: [f32; 4],
     pub bloom: [f32; 4],
+    pub rays: [f32; 4],
     pub lava: [f32; 4],
     pub heat: [[f32; 4]; HEATS],
 }
@@ -46,7 +47,10 @@ const MOON: f64 = 0.012;
 /// Brightness of a night sky without a moon.
 const AIRGLOW: f64 = 0.0009;
 /// Exposure that shows a sunlit lawn as the eye does.
-const EXPOSURE: f64 = 0.26;
+const EXPOSURE: f64 = 0.55;
+
+/// Light of the white of a picture of the sky.
+const WHITE: f64 = 3.0;
 
 /// What shines, at a moment of a film.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,16 +110,17 @@ pub struct Sky {
 
 impl Sky {
     /// The sky of sun and moon.
-    pub fn new(lights: &Lights, dust: f64, night: f64) -> Self {
-        let air = Air { dust };
+    pub fn new(air: &Air, lights: &Lights, night: f64, picture: Option<&image::RgbImage>) -> Self {
         let (sun, moon) = (lights.sun.to_array(), lights.moon.to_array());
         let moonlight = MOON * night * (1.0 - lights.day);
-        let mut table = SkyTable::new(air, &[(sun, SUN), (moon, moonlight * SUN * 0.6)]);
+        let mut table = match picture {
+            Some(picture) => SkyTable::picture(picture, (WHITE * lights.day.max(0.01)) as f32),
+            None => SkyTable::new(air, &[(sun, SUN), (moon, moonlight * SUN * 0.6)]),
+        };
         let glow = [0.55, 0.75, 1.0].map(|c| (c * AIRGLOW * night * (1.0 - lights.day)) as f32);
         let add = |pixel: &mut [f32; 3], by: f32| (0..3).for_each(|c| pixel[c] += glow[c] * by);
         table.light.iter_mut().for_each(|pixel| add(pixel, 1.0));
         add(&mut table.ambient, std::f32::consts::PI);
-        add(&mut table.horizon, 1.0);
         let direct = air.sunlight(sun);
         let moonlit = air.sunlight(moon).map(|v| v * moonlight);
         let by_sun = direct.iter().sum::<f64>() >= moonlit.iter().sum::<f64>();
@@ -184,6 +189,8 @@ impl Frame {
         let snow_m = scene.ground.snow_line_m.unwrap_or(2800.0 + lie.sea_m);
         // The eye gets used to the dark, but not wholly.
         let night_stops = 3.0 * (1.0 - lights.day);
+        let rays = scene.fog.on && scene.fog.shafts && moment.quality == Quality::Full;
+        let shafts = if rays { scene.fog.shaft_strength } else { 0.0 };
         let exposure = EXPOSURE * libm::exp2(scene.sky.exposure + night_stops);
         let bloom = if scene.bloom.on && moment.quality != Quality::Draft { scene.bloom.strength } else { 0.0 };
         Self {
@@ -207,7 +214,7 @@ impl Frame {
             ]
             .map(|v| v as f32),
             cover2: [cosine(scene.ground.snow_deg[0]), cosine(scene.ground.snow_deg[1]), style, quality].map(|v| v as f32),
-            bands: [0.65 * (snow_m - lie.sea_m), snow_m - lie.sea_m, 0.08 * (snow_m - lie.sea_m).abs(), 0.0]
+            bands: [0.65 * (snow_m - lie.sea_m), snow_m - lie.sea_m, 0.08 * (snow_m - lie.sea_m).abs(), 0.04 * lie.relief_m()]
                 .map(|v| (v * lie.exaggeration) as f32),
             water: [
                 scene.water.clarity_m.unwrap_or(lie.clarity_m()) * lie.exaggeration,
@@ -219,6 +226,7 @@ impl Frame {
             dark: with(colour(&scene.water.dark), look),
             shallow: with(colour(&scene.water.light), f64::from(scene.water.octaves)),
             // Brightness is of the picture: what is white at the exposure.
+            rays: [shafts, f64::from(u8::from(scene.sky.glare)) * lights.day, 0.0, 0.0].map(|v| v as f32),
             bloom: [scene.bloom.threshold / exposure, 0.5 * scene.bloom.threshold / exposure, bloom, LEVELS as f64].map(|v| v as f32),
             lava: [scene.lava.crust as f32, f32::from(u8::from(scene.lava.on)), 0.0, 0.0],
             heat: heats(&scene.lava, lights.day),

@@ -3,7 +3,7 @@
 
 use super::{
     Gpu,
-    passes::{LIGHT, Pass, Slot, view},
+    passes::{LIGHT, Pass, Slot, Whole, view},
 };
 use wgpu::{BindGroupLayout, RenderPipeline, Sampler, Texture};
 
@@ -55,7 +55,8 @@ impl Glow {
 
     /// Spreads the light of a picture.
     pub fn run(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, from: &Texture, copies: &Copies, [threshold, knee]: [f32; 2]) {
-        let mut draw = |pipeline: &RenderPipeline, from: &Texture, to: &Texture, told: [f32; 4], load| {
+        let mut whole = Whole { encoder };
+        let mut draw = |pipeline: &RenderPipeline, from: &Texture, to: &Texture, told: [f32; 4], over| {
             let uniform = gpu.buffer("glow", &told, wgpu::BufferUsages::UNIFORM);
             let source = view(from);
             let resources = vec![
@@ -63,40 +64,21 @@ impl Glow {
                 wgpu::BindingResource::Sampler(&self.sampler),
                 uniform.as_entire_binding(),
             ];
-            let group = gpu.group(&self.layout, resources);
-            let target = view(to);
-            let mut pass = begin(encoder, &target, load);
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
+            whole.draw(pipeline, &[&gpu.group(&self.layout, resources)], to, over);
         };
-        let clear = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
         let mut source = from;
         for (k, [level, half]) in copies.levels.iter().enumerate() {
-            draw(&self.shrink, source, level, [threshold, knee, f32::from(u8::from(k == 0)), 0.0], clear);
+            draw(&self.shrink, source, level, [threshold, knee, f32::from(u8::from(k == 0)), 0.0], false);
             let step = [1.0 / level.width() as f32, 1.0 / level.height() as f32];
-            draw(&self.spread, level, half, [step[0], 0.0, SIGMA, 1.0], clear);
-            draw(&self.spread, half, level, [0.0, step[1], SIGMA, 1.0], clear);
+            draw(&self.spread, level, half, [step[0], 0.0, SIGMA, 1.0], false);
+            draw(&self.spread, half, level, [0.0, step[1], SIGMA, 1.0], false);
             source = level;
         }
         for k in (1..copies.levels.len()).rev() {
             // A tent of the coarser level is added to the finer one.
             let (from, to) = (&copies.levels[k][0], &copies.levels[k - 1][0]);
-            draw(&self.add, from, to, [0.0, 0.0, 0.5, 1.0], wgpu::LoadOp::Load);
+            draw(&self.add, from, to, [0.0, 0.0, 0.5, 1.0], true);
         }
     }
 }
 
-fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, target: &'a wgpu::TextureView, load: wgpu::LoadOp<wgpu::Color>) -> wgpu::RenderPass<'a> {
-    let attachment = wgpu::RenderPassColorAttachment {
-        view: target,
-        depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-    };
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("glow"),
-        color_attachments: &[Some(attachment)],
-        ..Default::default()
-    })
-}

@@ -157,7 +157,11 @@ impl Gpu {
 
     /// What a pass draws into.
     pub(super) fn target(&self, label: &str, [width, height]: [u32; 2], format: TextureFormat, samples: u32) -> Texture {
-        let more = if samples == 1 { TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC } else { TextureUsages::empty() };
+        let more = match (samples, format.is_depth_stencil_format()) {
+            (1, _) => TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
+            (_, true) => TextureUsages::TEXTURE_BINDING,
+            _ => TextureUsages::empty(),
+        };
         self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: Extent3d { width: width.max(1), height: height.max(1), depth_or_array_layers: 1 },

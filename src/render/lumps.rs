@@ -5,6 +5,8 @@
 
 use wgpu::{BindGroupLayout, BindingResource, RenderPipeline, Texture, TextureFormat, VertexFormat};
 
+use glam::{DMat4, DVec2, DVec4};
+
 use super::{
     Gpu,
     fire::Spread,
@@ -75,6 +77,14 @@ pub(super) struct Felt {
     depth: Texture,
 }
 
+/// Particles that are to be seen: on the adapter, with their surface if that is asked for, the part of the picture that it takes, and
+/// the picture's size.
+pub(super) struct Shown {
+    particles: wgpu::Buffer,
+    count: u32,
+    surface: Option<(wgpu::BindGroup, [u32; 4], [u32; 2])>,
+}
+
 impl Felt {
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
         Self {
@@ -116,6 +126,7 @@ impl Lumps {
             gpu.pipeline(&Pass {
                 shaders: ["cover", "lava"],
                 groups: &[frame, ground, &surface_layout],
+                blend: Some(wgpu::BlendState::ALPHA_BLENDING),
                 depth: Some(true),
                 samples,
                 ..Pass::default()
@@ -134,15 +145,22 @@ impl Lumps {
         Self { spheres, smooth, smooth_layout, surface_layout, surfaces, balls }
     }
 
-    /// Makes the surface, before the picture; for [`Lumps::surface`].
+    /// Brings the particles and makes their surface where there is something to make it in; before the picture. `None` if none is to be
+    /// seen.
     pub fn make(
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         frame: &wgpu::BindGroup,
-        felt: &Felt,
-        (particles, count, radius_m): (&wgpu::Buffer, u32, f32),
-    ) -> wgpu::BindGroup {
+        felt: Option<&Felt>,
+        corners: &[Corner],
+        matrix: &DMat4,
+    ) -> Option<Shown> {
+        let size = felt.map_or([u32::MAX; 2], |felt| [felt.depth.width(), felt.depth.height()]);
+        let part = outline(corners, matrix, size)?;
+        let (particles, count) = (gpu.buffer("lava", corners, wgpu::BufferUsages::VERTEX), corners.len() as u32);
+        let Some(felt) = felt else { return Some(Shown { particles, count, surface: None }) };
+        let radius_m = corners.iter().map(|c| c[3]).sum::<f32>() / count as f32;
         let views = [view(&felt.felt[0]), view(&felt.felt[1])];
         let depth = view(&felt.depth);
         {
@@ -159,27 +177,56 @@ impl Lumps {
             let resources = vec![BindingResource::TextureView(&views[turn % 2]), uniform.as_entire_binding()];
             let group = gpu.group(&self.smooth_layout, resources);
             let mut pass = begin(encoder, &views[(turn + 1) % 2], None);
+            pass.set_scissor_rect(part[0], part[1], part[2], part[3]);
             pass.set_pipeline(&self.smooth);
             pass.set_bind_group(0, frame, &[]);
             pass.set_bind_group(1, &group, &[]);
             pass.draw(0..3, 0..1);
         }
-        gpu.group(&self.surface_layout, vec![BindingResource::TextureView(&views[0])])
+        let surface = gpu.group(&self.surface_layout, vec![BindingResource::TextureView(&views[0])]);
+        Some(Shown { particles, count, surface: Some((surface, part, size)) })
     }
 
-    /// Draws the surface into the picture; the frame's and the ground's groups are set.
-    pub fn surface(&self, pass: &mut wgpu::RenderPass, surface: &wgpu::BindGroup, many: bool) {
-        pass.set_pipeline(&self.surfaces[usize::from(many)]);
-        pass.set_bind_group(2, surface, &[]);
-        pass.draw(0..3, 0..1);
+    /// Draws them into the picture; the frame's and the ground's groups are set.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass, shown: &Shown, many: bool) {
+        if let Some((surface, part, size)) = &shown.surface {
+            pass.set_scissor_rect(part[0], part[1], part[2], part[3]);
+            pass.set_pipeline(&self.surfaces[usize::from(many)]);
+            pass.set_bind_group(2, surface, &[]);
+            pass.draw(0..3, 0..1);
+            pass.set_scissor_rect(0, 0, size[0], size[1]);
+        } else {
+            pass.set_pipeline(&self.balls[usize::from(many)]);
+            pass.set_vertex_buffer(0, shown.particles.slice(..));
+            pass.draw(0..6, 0..shown.count);
+        }
     }
+}
 
-    /// Draws each particle as a lump of its own.
-    pub fn balls(&self, pass: &mut wgpu::RenderPass, (particles, count): (&wgpu::Buffer, u32), many: bool) {
-        pass.set_pipeline(&self.balls[usize::from(many)]);
-        pass.set_vertex_buffer(0, particles.slice(..));
-        pass.draw(0..6, 0..count);
+/// The part of a picture in which particles are seen: left, top, width, height, px; `None` where none is.
+fn outline(corners: &[Corner], matrix: &DMat4, size: [u32; 2]) -> Option<[u32; 4]> {
+    let [width, height] = size.map(f64::from);
+    let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
+    for &[x, y, z, radius, ..] in corners {
+        let seen = *matrix * DVec4::new(x.into(), y.into(), z.into(), 1.0);
+        // A sphere of that radius is no wider than this, with some to spare at the picture's corners.
+        let wide =
+            2.0 * f64::from(radius) * DVec2::new(matrix.row(0).truncate().length(), matrix.row(1).truncate().length());
+        if seen.w < -f64::from(radius) {
+            continue;
+        }
+        if seen.w < 4.0 * f64::from(radius) {
+            return Some([0, 0, size[0], size[1]]);
+        }
+        let (at, wide) = (DVec2::new(seen.x, seen.y) / seen.w, wide / seen.w);
+        low = low.min(at - wide);
+        high = high.max(at + wide);
     }
+    let pixel = |v: DVec2| DVec2::new((v.x * 0.5 + 0.5) * width, (v.y * 0.5 + 0.5) * height);
+    let (low, high) = (pixel(low).max(DVec2::ZERO), pixel(high).min(DVec2::new(width, height)));
+    let (left, right) = (low.x.floor(), high.x.ceil());
+    let (top, bottom) = (height - high.y.ceil(), height - low.y.floor());
+    (left < right && top < bottom).then(|| [left, top, right - left, bottom - top].map(|v| v as u32))
 }
 
 fn begin<'a>(
@@ -203,4 +250,39 @@ fn begin<'a>(
         }),
         ..Default::default()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::Camera;
+    use glam::DVec3;
+
+    fn matrix() -> DMat4 {
+        let target = DVec3::ZERO;
+        Camera { target, from_deg: 180.0, down_deg: 20.0, distance_m: 100.0, view_deg: 40.0 }.view_projection(2.0)
+    }
+
+    #[test]
+    fn the_outline_holds_every_sphere() {
+        let corner = |x: f32, y: f32, z: f32| [x, y, z, 2.0, 1000.0, 0.0];
+        let all = [corner(-10.0, 0.0, 0.0), corner(20.0, 5.0, 3.0), corner(0.0, -30.0, -4.0)];
+        let [left, top, width, height] = outline(&all, &matrix(), [400, 200]).unwrap();
+        assert!(width < 400 && height < 200);
+        for [x, y, z, r, ..] in all {
+            for k in 0..100 {
+                let (a, b) = (f64::from(k) * 0.7, (f64::from(k) / 50.0 - 1.0).asin());
+                let off = DVec3::new(a.cos() * b.cos(), a.sin() * b.cos(), b.sin()) * f64::from(r);
+                let seen = matrix().project_point3(DVec3::new(x.into(), y.into(), z.into()) + off);
+                let at = [(seen.x * 0.5 + 0.5) * 400.0, (0.5 - seen.y * 0.5) * 200.0];
+                let inside = |v: f64, low: u32, long: u32| v >= f64::from(low) && v <= f64::from(low + long);
+                assert!(inside(at[0], left, width) && inside(at[1], top, height), "{at:?}");
+            }
+        }
+        // Behind the eye, beside the picture, around the eye.
+        assert_eq!(outline(&[corner(0.0, -300.0, 0.0)], &matrix(), [400, 200]), None);
+        assert_eq!(outline(&[corner(900.0, 0.0, 0.0)], &matrix(), [400, 200]), None);
+        assert_eq!(outline(&[corner(0.0, -92.0, 34.0)], &matrix(), [400, 200]), Some([0, 0, 400, 200]));
+        assert_eq!(outline(&[], &matrix(), [400, 200]), None);
+    }
 }

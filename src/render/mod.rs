@@ -24,6 +24,7 @@ mod renderer;
 mod sea;
 mod shade;
 mod shader;
+mod shafts;
 mod smoke;
 mod terrain;
 mod textures;
@@ -86,6 +87,9 @@ pub enum RenderError {
         /// Most of a side.
         most: u32,
     },
+    /// A picture that the scene names cannot be read.
+    #[error("{0}")]
+    Picture(String),
     /// A pass failed.
     #[error("the graphics adapter '{adapter}' failed: {cause}")]
     Failed {

@@ -25,6 +25,10 @@ pub(super) enum Slot {
     Layers,
     /// A sampler that filters.
     Sampler,
+    /// Depth, of one or several samples a pixel.
+    Depth,
+    /// See there.
+    DepthMany,
 }
 
 impl Slot {
@@ -43,6 +47,11 @@ impl Slot {
             Slot::Filtered => texture(true, TextureViewDimension::D2),
             Slot::Numbers => texture(false, TextureViewDimension::D2),
             Slot::Layers => texture(true, TextureViewDimension::D2Array),
+            Slot::Depth | Slot::DepthMany => BindingType::Texture {
+                sample_type: TextureSampleType::Depth,
+                view_dimension: TextureViewDimension::D2,
+                multisampled: self == Slot::DepthMany,
+            },
             Slot::Sampler => BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
         }
     }
@@ -60,6 +69,8 @@ pub(super) struct Pass<'a> {
     /// Whether it is hidden by what is nearer, and whether it hides what is farther.
     pub depth: Option<bool>,
     pub samples: u32,
+    /// Constants of the fragment shader.
+    pub constants: &'a [(&'a str, f64)],
 }
 
 impl Default for Pass<'_> {
@@ -73,6 +84,7 @@ impl Default for Pass<'_> {
             blend: None,
             depth: None,
             samples: 1,
+            constants: &[],
         }
     }
 }
@@ -148,7 +160,10 @@ impl Gpu {
             fragment: Some(wgpu::FragmentState {
                 module: &fragment,
                 entry_point: Some("main"),
-                compilation_options: Default::default(),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: pass.constants,
+                    ..Default::default()
+                },
                 targets: &[Some(target)],
             }),
             multiview_mask: None,
@@ -160,4 +175,33 @@ impl Gpu {
 /// A texture as a binding.
 pub(super) fn view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&Default::default())
+}
+
+/// Draws passes that go once over a whole texture.
+pub(super) struct Whole<'a> {
+    pub encoder: &'a mut wgpu::CommandEncoder,
+}
+
+impl Whole<'_> {
+    /// One of them; over what is there, or over black.
+    pub fn draw(&mut self, pipeline: &RenderPipeline, groups: &[&BindGroup], to: &wgpu::Texture, over: bool) {
+        let target = view(to);
+        let load = if over { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::BLACK) };
+        let attachment = wgpu::RenderPassColorAttachment {
+            view: &target,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
+        };
+        let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: None,
+            color_attachments: &[Some(attachment)],
+            ..Default::default()
+        });
+        pass.set_pipeline(pipeline);
+        for (place, group) in groups.iter().enumerate() {
+            pass.set_bind_group(place as u32, *group, &[]);
+        }
+        pass.draw(0..3, 0..1);
+    }
 }

@@ -6,16 +6,18 @@ use wgpu::{AddressMode, BindGroup, BindGroupLayout, BindingResource, RenderPipel
 
 use super::{
     Gpu, RenderError,
+    air::Air,
     camera::Camera,
     frame::{Frame, Lights, Moment, Sky},
     glow::{Copies, Glow},
     land::{GROUND, Land},
     lumps::{self, Felt, Lumps},
-    passes::{DEPTH, LIGHT, Pass, Slot, view},
+    passes::{DEPTH, LIGHT, Pass, Slot, Whole, view},
     sea::Sea,
+    shafts::{Halves, Shafts},
     smoke::{self, Smoke},
     terrain::{self, Patch, Seen},
-    textures::Textures,
+    textures::textures,
 };
 use crate::{
     scene::{Quality, SceneParams, Surround},
@@ -24,6 +26,8 @@ use crate::{
 
 /// Format of pictures: sRGB, eight bits.
 const PICTURE: TextureFormat = TextureFormat::Rgba8UnormSrgb;
+/// Samples a pixel for draft, normal and full quality: edges are smooth in the latter two.
+const SAMPLES: [u32; 3] = [1, 4, 4];
 /// Most pixels of a side of a picture, besides the adapter's own limit.
 const MOST_PX: u32 = 16_384;
 
@@ -35,22 +39,23 @@ pub struct Renderer {
     tone_layout: BindGroupLayout,
     covers: BindGroup,
     samplers: [wgpu::Sampler; 3],
-    /// Pipelines for one and for four samples a pixel.
-    sets: [Set; 2],
+    /// Pipelines for draft, normal and full quality.
+    sets: [Set; 3],
     tone: RenderPipeline,
     glow: Glow,
     lumps: Lumps,
     smoke: Smoke,
+    shafts: Shafts,
     indices: wgpu::Buffer,
     index_count: u32,
     sea: Sea,
+    air: Option<(f64, Air)>,
     sky: Option<SkyTexture>,
     targets: Option<Targets>,
 }
 
 /// The pipelines of the picture itself.
 struct Set {
-    samples: u32,
     ground: RenderPipeline,
     side: RenderPipeline,
     backdrop: RenderPipeline,
@@ -60,6 +65,7 @@ struct Set {
 struct SkyTexture {
     lights: Lights,
     told: [f64; 2],
+    picture: Option<String>,
     sky: Sky,
     texture: Texture,
 }
@@ -74,6 +80,7 @@ struct Targets {
     picture: Texture,
     copies: Copies,
     felt: Option<Felt>,
+    halves: Halves,
 }
 
 impl Targets {
@@ -87,6 +94,7 @@ impl Targets {
             picture: gpu.target("picture", size, PICTURE, 1),
             copies: Copies::new(gpu, size),
             felt: None,
+            halves: Halves::new(gpu, size),
         }
     }
 }
@@ -97,25 +105,20 @@ impl Renderer {
         gpu.checked(|| Ok(()))?;
         let frame_layout = gpu.layout(&[Slot::Uniform, Slot::Filtered, Slot::Sampler, Slot::Sampler, Slot::Sampler]);
         let ground_layout = gpu.layout(&GROUND);
-        let cover_layout = gpu.layout(&[Slot::Layers, Slot::Layers]);
-        let tone_layout = gpu.layout(&[Slot::Numbers, Slot::Filtered]);
-        let sets = [1, 4].map(|samples| Set::new(&gpu, samples, [&frame_layout, &ground_layout, &cover_layout]));
+        let cover_layout = gpu.layout(&[Slot::Layers]);
+        let tone_layout = gpu.layout(&[Slot::Numbers, Slot::Filtered, Slot::Numbers, Slot::Numbers]);
+        let sets = [0, 1, 2].map(|quality| Set::new(&gpu, quality, [&frame_layout, &ground_layout, &cover_layout]));
         let tone = gpu.pipeline(&Pass {
             shaders: ["cover", "tone"],
             groups: &[&frame_layout, &tone_layout],
             format: PICTURE,
             ..Pass::default()
         });
-        let textures = Textures::new(&gpu);
-        let layers = |texture: &Texture| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2Array),
-                ..Default::default()
-            })
-        };
-        let (colours, slopes) = (layers(&textures.colours), layers(&textures.slopes));
-        let covers =
-            gpu.group(&cover_layout, vec![BindingResource::TextureView(&colours), BindingResource::TextureView(&slopes)]);
+        let textures = textures(&gpu).create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        let covers = gpu.group(&cover_layout, vec![BindingResource::TextureView(&textures)]);
         let indices = terrain::indices();
         let (clamp, repeat) = (AddressMode::ClampToEdge, AddressMode::Repeat);
         Ok(Self {
@@ -125,6 +128,7 @@ impl Renderer {
             glow: Glow::new(&gpu),
             lumps: Lumps::new(&gpu, [&frame_layout, &ground_layout]),
             smoke: Smoke::new(&gpu, [&frame_layout, &ground_layout]),
+            shafts: Shafts::new(&gpu, &frame_layout, &ground_layout),
             indices: gpu.buffer("lattice", &indices, wgpu::BufferUsages::INDEX),
             index_count: indices.len() as u32,
             sea: Sea::new(&gpu),
@@ -132,6 +136,7 @@ impl Renderer {
             ground_layout,
             frame_layout,
             tone_layout,
+            air: None,
             sky: None,
             targets: None,
             gpu,
@@ -155,19 +160,19 @@ impl Renderer {
         if width == 0 || height == 0 || width.max(height) > most {
             return Err(RenderError::PictureSize { width, height, most });
         }
-        let samples = if moment.quality == Quality::Draft { 1 } else { 4 };
+        let samples = SAMPLES[moment.quality as usize];
         if self.targets.as_ref().is_none_or(|t| t.size != moment.size || t.samples != samples) {
             self.targets = None;
             self.targets = Some(self.gpu.checked(|| Ok(Targets::new(&self.gpu, moment.size, samples)))?);
         }
         let felt = scene.lava.on && !scene.lava.spheres && land.lumps().is_some_and(|lumps| !lumps.is_empty());
-        if let (true, Some(targets)) = (felt, &mut self.targets) {
-            let size = targets.size;
-            if targets.felt.is_none() {
-                targets.felt = Some(self.gpu.checked(|| Ok(Felt::new(&self.gpu, size)))?);
-            }
+        if let Some(targets) = &mut self.targets {
+            targets.felt = match targets.felt.take() {
+                None if felt => Some(self.gpu.checked(|| Ok(Felt::new(&self.gpu, moment.size)))?),
+                there => there.filter(|_| felt),
+            };
         }
-        self.look_up(scene, moment);
+        self.look_up(scene, moment)?;
         let puffs = match &self.sky {
             Some(sky) if scene.smoke.on => {
                 land.plumes.corners(moment.seconds, scene.smoke.density, &land.lie, camera.eye(), sky.sky.toward)
@@ -200,17 +205,24 @@ impl Renderer {
     }
 
     /// The sky of the moment, made anew where it has changed.
-    fn look_up(&mut self, scene: &SceneParams, moment: &Moment) {
+    fn look_up(&mut self, scene: &SceneParams, moment: &Moment) -> Result<(), RenderError> {
         let lights = Lights::at(&scene.sun, moment.share);
         let told = [scene.sky.dust, scene.sky.night];
-        if self.sky.as_ref().is_some_and(|sky| sky.lights == lights && sky.told == told) {
-            return;
+        let picture = &scene.sky.picture;
+        if self.sky.as_ref().is_some_and(|sky| sky.lights == lights && sky.told == told && sky.picture == *picture) {
+            return Ok(());
         }
-        let sky = Sky::new(&lights, told[0], told[1]);
+        if self.air.as_ref().is_none_or(|(dust, _)| *dust != told[0]) {
+            self.air = Some((told[0], Air::new(told[0])));
+        }
+        let Some((_, air)) = &self.air else { return Ok(()) };
+        let image = picture.as_ref().map(|file| open_sky(file)).transpose()?;
+        let sky = Sky::new(air, &lights, told[1], image.as_ref());
         let pixels: Vec<[half::f16; 4]> =
             sky.table.light.iter().map(|p| [p[0], p[1], p[2], 1.0].map(half::f16::from_f32)).collect();
-        let texture = self.gpu.raster("sky", LIGHT, &[(super::air::SKY_SIZE, pixels)]);
-        self.sky = Some(SkyTexture { lights, told, sky, texture });
+        let texture = self.gpu.raster("sky", LIGHT, &[(sky.table.size, pixels)]);
+        self.sky = Some(SkyTexture { lights, told, picture: picture.clone(), sky, texture });
+        Ok(())
     }
 
     fn encode(
@@ -234,14 +246,14 @@ impl Renderer {
             eye: camera.eye(),
             pixels: camera.pixels_per_radian(height),
             most_px: match moment.quality {
-                Quality::Draft => 9.0,
-                Quality::Normal => 4.0,
-                Quality::Full => 2.5,
+                Quality::Draft => 16.0,
+                Quality::Normal => 8.0,
+                Quality::Full => 6.0,
             },
         };
-        let patches = land.tree.select(&seen);
+        let patches = land.tree.select(&seen); if std::env::var("LIVE_SHADERS").is_ok() { eprintln!("patches {}", patches.len()); } // DEV-ONLY
         let patch_buffer = gpu.buffer("patches", &patches, wgpu::BufferUsages::VERTEX);
-        let set = &self.sets[usize::from(targets.samples > 1)];
+        let set = &self.sets[moment.quality as usize];
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let around = match scene.surround {
             Surround::Auto => land.lie.rim_at_sea,
@@ -249,19 +261,10 @@ impl Renderer {
             Surround::Block => false,
         };
         let many = targets.samples > 1;
-        let lumps = land.lumps().filter(|lumps| scene.lava.on && !lumps.is_empty());
-        let lumps = lumps.map(|lumps| {
-            let corners = lumps::corners(lumps, &land.lie, !scene.lava.spheres);
-            let radius = corners.iter().map(|c| c[3]).sum::<f32>() / corners.len() as f32;
-            (gpu.buffer("lava", &corners, wgpu::BufferUsages::VERTEX), corners.len() as u32, radius)
-        });
         let smoke = (!puffs.is_empty()).then(|| (gpu.buffer("smoke", puffs, wgpu::BufferUsages::VERTEX), puffs.len() as u32));
-        let surface = match (&lumps, &targets.felt) {
-            (Some((buffer, count, radius)), Some(felt)) if !scene.lava.spheres => {
-                Some(self.lumps.make(gpu, &mut encoder, &frame_group, felt, (buffer, *count, *radius)))
-            }
-            _ => None,
-        };
+        let lumps = land.lumps().filter(|_| scene.lava.on).unwrap_or_default();
+        let corners = lumps::corners(lumps, &land.lie, !scene.lava.spheres);
+        let shown = self.lumps.make(gpu, &mut encoder, &frame_group, targets.felt.as_ref(), &corners, &seen.matrix);
         {
             let mut pass = self.begin(&mut encoder, targets);
             pass.set_bind_group(0, &frame_group, &[]);
@@ -276,13 +279,11 @@ impl Renderer {
                 pass.set_vertex_buffer(0, land.walls.slice(..));
                 pass.draw(0..land.wall_corners, 0..1);
             }
-            match (&surface, &lumps) {
-                (Some(surface), _) => self.lumps.surface(&mut pass, surface, many),
-                (None, Some((buffer, count, _))) => self.lumps.balls(&mut pass, (buffer, *count), many),
-                (None, None) => {}
-            }
             pass.set_pipeline(&set.backdrop);
             pass.draw(0..3, 0..1);
+            if let Some(shown) = &shown {
+                self.lumps.draw(&mut pass, shown, many);
+            }
             if scene.water.sea && land.lie.range_m[0] < land.lie.sea_m {
                 pass.set_pipeline(&set.sea);
                 self.sea.draw(&mut pass, around);
@@ -294,27 +295,12 @@ impl Renderer {
         if frame.bloom[2] > 0.0 {
             self.glow.run(gpu, &mut encoder, &targets.light, &targets.copies, [frame.bloom[0], frame.bloom[1]]);
         }
-        let (light, glow) = (view(&targets.light), view(targets.copies.sum()));
-        let tone_group =
-            gpu.group(&self.tone_layout, vec![BindingResource::TextureView(&light), BindingResource::TextureView(&glow)]);
-        let picture = view(&targets.picture);
-        {
-            let attachment = wgpu::RenderPassColorAttachment {
-                view: &picture,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            };
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("tone"),
-                color_attachments: &[Some(attachment)],
-                ..Default::default()
-            });
-            pass.set_pipeline(&self.tone);
-            pass.set_bind_group(0, &frame_group, &[]);
-            pass.set_bind_group(1, &tone_group, &[]);
-            pass.draw(0..3, 0..1);
+        if frame.rays[0] > 0.0 {
+            self.shafts.run(gpu, &mut encoder, [&frame_group, &land.group], &targets.depth, &targets.halves);
         }
+        let views = [&targets.light, targets.copies.sum(), targets.halves.light(), targets.halves.distance()].map(view);
+        let tone_group = gpu.group(&self.tone_layout, views.iter().map(BindingResource::TextureView).collect());
+        Whole { encoder: &mut encoder }.draw(&self.tone, &[&frame_group, &tone_group], &targets.picture, false);
         gpu.queue.submit([encoder.finish()]);
     }
 
@@ -340,8 +326,16 @@ impl Renderer {
     }
 }
 
+/// A picture of the sky.
+fn open_sky(file: &str) -> Result<RgbImage, RenderError> {
+    let picture = crate::world::open_picture(std::path::Path::new(file));
+    Ok(picture.map_err(|e| RenderError::Picture(e.to_string()))?.to_rgb8())
+}
+
 impl Set {
-    fn new(gpu: &Gpu, samples: u32, [frame, ground, covers]: [&BindGroupLayout; 3]) -> Self {
+    fn new(gpu: &Gpu, quality: usize, [frame, ground, covers]: [&BindGroupLayout; 3]) -> Self {
+        let samples = SAMPLES[quality];
+        let constants = &[("QUALITY", quality as f64)];
         let attribute = |location, offset, format| wgpu::VertexAttribute { format, offset, shader_location: location };
         let patches = [attribute(0, 0, VertexFormat::Float32x4), attribute(1, 16, VertexFormat::Float32x4)];
         let patches = wgpu::VertexBufferLayout {
@@ -361,14 +355,26 @@ impl Set {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &corners,
         };
-        let opaque = |shaders, groups: &[&BindGroupLayout], vertices: &[Option<wgpu::VertexBufferLayout>], strip| {
-            gpu.pipeline(&Pass { shaders, groups, vertices, strip, depth: Some(true), samples, ..Pass::default() })
-        };
         let over = Some(wgpu::BlendState::ALPHA_BLENDING);
         Self {
-            samples,
-            ground: opaque(["ground_vertex", "ground"], &[frame, ground, covers], &[Some(patches)], false),
-            side: opaque(["side_vertex", "side"], &[frame, ground], &[Some(walls)], true),
+            ground: gpu.pipeline(&Pass {
+                shaders: ["ground_vertex", "ground"],
+                groups: &[frame, ground, covers],
+                vertices: &[Some(patches)],
+                depth: Some(true),
+                samples,
+                constants,
+                ..Pass::default()
+            }),
+            side: gpu.pipeline(&Pass {
+                shaders: ["side_vertex", "side"],
+                groups: &[frame, ground],
+                vertices: &[Some(walls)],
+                strip: true,
+                depth: Some(true),
+                samples,
+                ..Pass::default()
+            }),
             backdrop: gpu.pipeline(&Pass {
                 shaders: ["cover", "backdrop"],
                 groups: &[frame],

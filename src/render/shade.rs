@@ -134,8 +134,10 @@ mod tests {
             assert!((shaded as f64 - length / 10.0).abs() <= 1.0, "{altitude}: {shaded}");
             assert!(row[41..].iter().all(|s| s[0] < 0.0));
             // Ten cells behind it the shade reaches as high as the wall less the sun's fall.
-            assert!((f64::from(row[30][0]) - (100.0 - 100.0 * libm::tan(a))).abs() < 1e-2);
-            assert_eq!(row[30][1], 10.0);
+            if libm::tan(a) < 1.0 {
+                assert!((f64::from(row[30][0]) - (100.0 - 100.0 * libm::tan(a))).abs() < 1e-2);
+                assert_eq!(row[30][1], 10.0);
+            }
         }
     }
 

@@ -11,14 +11,15 @@ macro_rules! sources {
     };
 }
 
-/// What is imported.
+/// Files of the library.
 const LIBRARY: &[(&str, &str)] = sources!("lib/": "frame", "noise", "sky", "ground", "light", "splat", "haze", "lens", "bright", "fire", "noise3");
 
-/// What is run.
+/// Entry points.
 pub(super) const ENTRIES: &[(&str, &str)] = sources!("":
     "cover", "hillshade", "ground_vertex", "ground", "side_vertex", "side", "backdrop",
     "sea_vertex", "sea", "shrink", "spread", "tone",
     "lump_vertex", "lump", "lump_smooth", "lava", "ball", "smoke_vertex", "smoke",
+    "distance", "distance_many", "shafts", "soften",
 );
 
 /// The whole text of an entry.
@@ -63,5 +64,63 @@ impl Gpu {
             label: Some(name),
             source: wgpu::ShaderSource::Wgsl(source(name).into()),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::frame::Frame;
+    use naga::{TypeInner, front::wgsl, valid};
+    use std::mem::offset_of;
+
+    fn module(text: &str) -> naga::Module {
+        wgsl::parse_str(text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(text)))
+    }
+
+    /// Without any adapter: every shader is right, and has one entry point, called `main`.
+    #[test]
+    fn every_shader_is_valid() {
+        for (name, _) in ENTRIES {
+            let module = module(&source(name));
+            let mut validator = valid::Validator::new(valid::ValidationFlags::all(), valid::Capabilities::default());
+            validator.validate(&module).unwrap_or_else(|e| panic!("{name}: {e:?}"));
+            let entries: Vec<_> = module.entry_points.iter().map(|entry| entry.name.as_str()).collect();
+            assert_eq!(entries, ["main"], "{name}");
+        }
+    }
+
+    /// Every file under `shaders/` is known, so that none is forgotten here.
+    #[test]
+    fn every_file_is_listed() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+        for (folder, list) in [(folder.join("lib"), LIBRARY), (folder, ENTRIES)] {
+            for file in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+                if file.extension().is_some_and(|end| end == "wgsl") {
+                    let name = file.file_stem().unwrap().to_str().unwrap();
+                    assert!(list.iter().any(|(known, _)| *known == name), "{name} is not listed");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_frame_lies_in_memory_as_the_shader_reads_it() {
+        let text = source("backdrop");
+        let module = module(&text);
+        let (_, frame) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("Frame")).unwrap();
+        let TypeInner::Struct { members, span } = &frame.inner else { panic!("no struct") };
+        assert_eq!(*span as usize, size_of::<Frame>());
+        macro_rules! same {
+            ($($field:ident),* $(,)?) => {{
+                let ours = [$((stringify!($field), offset_of!(Frame, $field))),*];
+                let theirs: Vec<_> = members.iter().map(|m| (m.name.as_deref().unwrap(), m.offset as usize)).collect();
+                assert_eq!(theirs, ours);
+            }};
+        }
+        same!(
+            view_projection, from_picture, eye, toward, light, sun, moon, ambient, map, haze, air, picture, cover, cover2,
+            bands, water, dark, shallow, bloom, rays, lava, heat
+        );
     }
 }

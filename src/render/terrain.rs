@@ -80,7 +80,7 @@ impl Quadtree {
     /// picture; a patch must fit in the range, or its edges would not meet.
     fn range_m(&self, level: usize, seen: &Seen) -> f64 {
         let by_size = 2.0 * self.lie.cell_m * seen.pixels / seen.most_px;
-        let by_patch = self.lie.cell_m * PATCH as f64 * 5.0;
+        let by_patch = self.lie.cell_m * PATCH as f64 * 3.2;
         by_size.max(by_patch) * (1u64 << level) as f64
     }
 
@@ -232,7 +232,7 @@ mod tests {
     fn edges_meet() {
         let tree = tree(1024, 1024);
         let camera = Camera { target: DVec3::new(500.0, -300.0, 20.0), from_deg: 30.0, down_deg: 25.0, distance_m: 700.0, view_deg: 50.0 };
-        let all = Seen { matrix: DMat4::ZERO, ..seen(&camera) };
+        let all = Seen { matrix: DMat4::ZERO, most_px: 40.0, ..seen(&camera) };
         let patches = tree.select(&all);
         assert!(patches.iter().any(|p| p.patch[3] == 0.0) && patches.iter().any(|p| p.patch[3] >= 2.0));
         for coarse in &patches {

@@ -1,4 +1,4 @@
-//! Sand, grass, rock and snow as small seamless textures, computed: how bright each texel is, how high it stands, which way it slopes.
+//! Sand, grass, rock and snow as small seamless textures, computed: which way each texel slopes, how high it stands, how bright it is.
 //! They hold nothing larger than a few dozen texels, so that no pattern shows where they repeat.
 
 use rayon::prelude::*;
@@ -30,44 +30,25 @@ const RECIPES: [Recipe; 4] = [
 ];
 /// Root mean square of the slopes, of which ±1 is the most that is kept.
 const TYPICAL_SLOPE: f32 = 0.33;
-/// Mean brightness; the shader takes it for one.
-const MIDDLE: f32 = 0.5263;
 
-/// The textures of all layers: colours with heights, slopes.
-pub(super) struct Textures {
-    /// Red, green, blue around the layer's own colour, and height.
-    pub colours: wgpu::Texture,
-    /// Slope across and up.
-    pub slopes: wgpu::Texture,
-}
-
-impl Textures {
-    /// Computes them and hands them over.
-    pub fn new(gpu: &Gpu) -> Self {
-        let levels = SIDE.ilog2() + 1;
-        let make = |label| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d { width: SIDE as u32, height: SIDE as u32, depth_or_array_layers: 4 },
-                mip_level_count: levels,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: wgpu::TextureFormat::Rgba8Unorm,
-                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                view_formats: &[],
-            })
-        };
-        let (colours, slopes) = (make("colours of the ground"), make("relief of the ground"));
-        for (layer, recipe) in RECIPES.iter().enumerate() {
-            let (colour, slope) = recipe.texels();
-            for (texture, data) in [(&colours, colour), (&slopes, slope)] {
-                for (level, (size, data)) in copies([SIDE; 2], data).iter().enumerate() {
-                    gpu.write(texture, (level as u32, layer as u32), *size, data);
-                }
-            }
+/// The textures of all layers: slope across and up, height, brightness; half is zero slope, middle height, own colour.
+pub(super) fn textures(gpu: &Gpu) -> wgpu::Texture {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("textures of the ground"),
+        size: wgpu::Extent3d { width: SIDE as u32, height: SIDE as u32, depth_or_array_layers: 4 },
+        mip_level_count: SIDE.ilog2() + 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (layer, recipe) in RECIPES.iter().enumerate() {
+        for (level, (size, data)) in copies([SIDE; 2], recipe.texels()).iter().enumerate() {
+            gpu.write(&texture, (level as u32, layer as u32), *size, data);
         }
-        Self { colours, slopes }
     }
+    texture
 }
 
 impl Recipe {
@@ -84,7 +65,7 @@ impl Recipe {
         sum / most
     }
 
-    fn texels(&self) -> (Vec<[u8; 4]>, Vec<[u8; 4]>) {
+    fn texels(&self) -> Vec<[u8; 4]> {
         let heights: Vec<f32> = (0..SIDE * SIDE).into_par_iter().map(|i| self.height(i % SIDE, i / SIDE)).collect();
         let n = heights.len() as f32;
         let mean = heights.iter().sum::<f32>() / n;
@@ -97,17 +78,12 @@ impl Recipe {
         let steep = (0..heights.len()).map(|i| slope(i).iter().map(|s| s * s).sum::<f32>()).sum::<f32>() / (2.0 * n);
         let by = TYPICAL_SLOPE / steep.sqrt();
         let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-        let colour = |i: usize| {
+        let texel = |i: usize| {
             let over = (heights[i] - mean) / deviation;
-            let bright = byte(MIDDLE * (1.0 + self.contrast * 0.4 * over.clamp(-2.2, 2.2)));
-            [bright, bright, bright, byte(0.5 + over * 0.2)]
+            let [a, b] = slope(i).map(|s| byte(0.5 + 0.5 * s * by));
+            [a, b, byte(0.5 + over * 0.2), byte(0.5 * (1.0 + self.contrast * 0.4 * over.clamp(-2.2, 2.2)))]
         };
-        let lean = |i: usize| {
-            let [a, b] = slope(i);
-            [byte(0.5 + 0.5 * a * by), byte(0.5 + 0.5 * b * by), 128, 255]
-        };
-        let all = || (0..heights.len()).into_par_iter();
-        (all().map(colour).collect(), all().map(lean).collect())
+        (0..heights.len()).into_par_iter().map(texel).collect()
     }
 }
 
@@ -140,12 +116,14 @@ mod tests {
     #[test]
     fn textures_are_even_and_seamless() {
         for recipe in &RECIPES {
-            let (colours, _) = recipe.texels();
-            let mean = colours.iter().map(|c| f32::from(c[0])).sum::<f32>() / colours.len() as f32;
-            assert!((mean / 255.0 - MIDDLE).abs() < 0.02, "{mean}");
+            let texels = recipe.texels();
+            for channel in 0..4 {
+                let mean = texels.iter().map(|t| f32::from(t[channel])).sum::<f32>() / texels.len() as f32;
+                assert!((mean / 255.0 - 0.5).abs() < 0.01, "{channel}: {mean}");
+            }
             // Across the seam neighbours differ no more than elsewhere.
             let row = |y: usize| {
-                (0..SIDE).map(|x| (f32::from(colours[y * SIDE + x][3]) - f32::from(colours[((y + 1) % SIDE) * SIDE + x][3])).abs()).sum::<f32>()
+                (0..SIDE).map(|x| (f32::from(texels[y * SIDE + x][2]) - f32::from(texels[((y + 1) % SIDE) * SIDE + x][2])).abs()).sum::<f32>()
             };
             let inside = (0..SIDE - 1).map(row).sum::<f32>() / (SIDE - 1) as f32;
             assert!(row(SIDE - 1) < 1.5 * inside);
