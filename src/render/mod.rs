@@ -18,6 +18,8 @@ mod ground;
 mod hillshade;
 mod land;
 mod lumps;
+#[cfg(test)]
+mod night;
 mod passes;
 mod puff;
 mod renderer;
