@@ -115,7 +115,7 @@ fn lava_at(at: vec3<f32>, uv: vec2<f32>, normal: vec3<f32>, away: f32, snow: f32
     if (frame.lava.z > 0.0) { molten = 0.0; }
     let age = map.a / max(map.b, 1e-3);
     // What is older is hidden by what grows.
-    let bare = max(frozen * (1.0 - 0.85 * smooth_between(0.75, 1.0, age + 0.15 * rough.x)), molten);
+    let bare = max(frozen * (1.0 - smooth_between(0.75, 1.0, age + 0.1 * rough.x)), molten);
     out.share = bare;
     out.albedo = frozen_colour(age * (1.0 - molten)) * (1.0 + 0.5 * rough.x + 0.25 * lobes.x);
     let slope = vec3<f32>(0.45 * rough.yz * frame.cover.w, 0.0);

@@ -1,7 +1,7 @@
 //! What grows and lies on the land, as seen from the air: colours of vegetation and bare soil by weather, or by height
 //! where a world has none; snow above its line; loose ground where sediment was laid down.
 
-use super::ground::Lie;
+use super::{fire::Frozen, ground::Lie};
 use crate::{
     grid::Field,
     scene::{GroundStyle, SceneParams},
@@ -30,7 +30,6 @@ const SNOW_LINE_M: f32 = 2800.0;
 const SNOW_M: [f32; 2] = [-250.0, 450.0];
 /// Thickness of sediment from which ground is loose, m.
 const LOOSE_M: [f32; 2] = [0.4, 6.0];
-const LAVA_M: [f32; 2] = [0.05, 0.8];
 
 fn smooth(from: f32, to: f32, v: f32) -> f32 {
     let t = ((v - from) / (to - from)).clamp(0.0, 1.0);
@@ -64,7 +63,7 @@ pub fn grown(temperature_degc: f32, rain_mm: f32) -> (Rgb, f32) {
 pub struct Covers<'a> {
     climate: Option<[&'a Field<f32>; 3]>,
     sediment: Option<&'a Field<f32>>,
-    lava: Option<&'a Field<f32>>,
+    lava: Option<Frozen<'a>>,
     wetness: Option<&'a Field<f32>>,
     snow_line_m: Option<f32>,
     sea_m: f32,
@@ -86,7 +85,7 @@ impl<'a> Covers<'a> {
         Self {
             climate,
             sediment: world.layer(Layer::Sediment),
-            lava: world.layer(Layer::Lava),
+            lava: Frozen::of(world),
             wetness: world.layer(Layer::Wetness),
             snow_line_m: scene.ground.snow_line_m.map(|m| m as f32),
             sea_m: lie.sea_m as f32,
@@ -110,7 +109,7 @@ impl<'a> Covers<'a> {
             let wet = smooth(7.0, 12.0, wetness.data[index]) * 0.35;
             colour = mix(colour, grown(temperature, rain * 2.2).0, wet);
         }
-        let lava = self.lava.map_or(0.0, |lava| smooth(LAVA_M[0], LAVA_M[1], lava.data[index]));
+        let lava = self.lava.as_ref().map_or(0.0, |lava| lava.bare(index));
         colour = mix(colour, BASALT, 0.9 * lava);
         growth *= 1.0 - lava;
         if let Some(tints) = &self.tints {

@@ -31,6 +31,10 @@ const BRIGHT: [f64; 2] = [1.7, 11.0];
 /// Depths from which molten and frozen lava hide the ground, m.
 const MOLTEN_M: [f32; 2] = [0.02, 0.4];
 const FROZEN_M: [f32; 2] = [0.05, 0.8];
+/// Thickness of sediment that begins to hide frozen lava, and hides it.
+const BURIED_M: [f32; 2] = [0.1, 1.5];
+/// Codes of ages at which plants begin to grow on it, and have grown over it: a thousand and ten thousand years.
+const GROWN: [f32; 2] = [0.75, 1.0];
 /// Age of which frozen lava's code is 1, yr: its logarithm is coded.
 const OLD_YR: f64 = 1e4;
 /// Cells a side on which light from lava is spread, at most.
@@ -95,15 +99,46 @@ fn smooth([from, to]: [f32; 2], v: f32) -> f32 {
 /// Where a world has lava: share of a cell that is molten, its temperature times that, share that is frozen, its age's code
 /// times that. `None` where there is none.
 pub(super) fn lava(world: &World) -> Option<Vec<[f32; 4]>> {
-    let layers = [Layer::MoltenLava, Layer::MoltenTemperature, Layer::Lava, Layer::LavaDate].map(|l| world.layer(l));
-    let there = [layers[0], layers[2]].iter().flatten().any(|layer| layer.data.iter().any(|&m| m > MOLTEN_M[0]));
+    let molten = [Layer::MoltenLava, Layer::MoltenTemperature].map(|layer| world.layer(layer));
+    let frozen = Frozen::of(world);
+    let layers = [molten[0], frozen.as_ref().map(|frozen| frozen.lava)];
+    let there = layers.iter().flatten().any(|layer| layer.data.iter().any(|&m| m > MOLTEN_M[0]));
     let cell = |i: usize| {
-        let [molten_m, degc, frozen_m, date] = layers.map(|layer| layer.map_or(0.0, |layer| layer.data[i]));
-        let molten = smooth(MOLTEN_M, molten_m);
-        let frozen = smooth(FROZEN_M, frozen_m);
-        [molten, molten * degc, frozen, frozen * age_code(world.time_yr - f64::from(date))]
+        let [molten_m, degc] = molten.map(|layer| layer.map_or(0.0, |layer| layer.data[i]));
+        let share = smooth(MOLTEN_M, molten_m);
+        let [cold, age] = frozen.as_ref().map_or([0.0; 2], |frozen| frozen.at(i));
+        [share, share * degc, cold, cold * age]
     };
     there.then(|| (0..world.grid.cells()).into_par_iter().map(cell).collect())
+}
+
+/// Frozen lava of a world.
+pub(super) struct Frozen<'a> {
+    lava: &'a Field<f32>,
+    date: Option<&'a Field<f32>>,
+    sediment: Option<&'a Field<f32>>,
+    time_yr: f64,
+}
+
+impl<'a> Frozen<'a> {
+    /// `None` where the world has no such layer.
+    pub fn of(world: &'a World) -> Option<Self> {
+        let [date, sediment] = [Layer::LavaDate, Layer::Sediment].map(|layer| world.layer(layer));
+        world.layer(Layer::Lava).map(|lava| Self { lava, date, sediment, time_yr: world.time_yr })
+    }
+
+    /// Share of a cell that is frozen lava with nothing on it, and the code of its age.
+    pub fn at(&self, i: usize) -> [f32; 2] {
+        let buried = self.sediment.map_or(0.0, |sediment| smooth(BURIED_M, sediment.data[i]));
+        let date = self.date.map_or(0.0, |date| date.data[i]);
+        [smooth(FROZEN_M, self.lava.data[i]) * (1.0 - buried), age_code(self.time_yr - f64::from(date))]
+    }
+
+    /// Share of a cell on which nothing grows yet.
+    pub fn bare(&self, i: usize) -> f32 {
+        let [share, age] = self.at(i);
+        share * (1.0 - smooth(GROWN, age))
+    }
 }
 
 /// 0 for lava that froze now, 1 for what did ten thousand years ago.

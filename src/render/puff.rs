@@ -3,7 +3,10 @@
 
 use rayon::prelude::*;
 
-use super::{Gpu, ground::copies};
+use super::{
+    Gpu,
+    ground::{byte, copies},
+};
 
 /// Texels of a side, and pictures that go round.
 pub(super) const SIDE: usize = 128;
@@ -122,7 +125,6 @@ fn texel(layer: usize, [u, v]: [f32; 2]) -> [u8; 4] {
         }
     }
     let hidden = 1.0 - through;
-    let byte = |v: f32| super::ground::byte(v);
     let mean = |v: f32| if hidden > 1e-3 { v / hidden } else { 0.0 };
     [byte(0.5 + 0.5 * mean(light[0])), byte(0.5 + 0.5 * mean(light[1])), byte(mean(open)), byte(hidden)]
 }

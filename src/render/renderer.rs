@@ -173,9 +173,11 @@ impl Renderer {
             };
         }
         self.look_up(scene, moment)?;
+        let every = if moment.quality == Quality::Draft { 2 } else { 1 };
+        let look = smoke::Look { density: scene.smoke.density, every };
         let puffs = match &self.sky {
             Some(sky) if scene.smoke.on => {
-                land.plumes.corners(moment.seconds, scene.smoke.density, &land.lie, camera.eye(), sky.sky.toward)
+                land.plumes.corners(moment.seconds, look, &land.lie, camera.eye(), sky.sky.toward)
             }
             _ => Vec::new(),
         };

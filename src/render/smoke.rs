@@ -31,9 +31,19 @@ pub(super) struct Plumes {
     time_yr: f64,
 }
 
+/// How smoke is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Look {
+    /// How much it hides.
+    pub density: f64,
+    /// One of so many puffs is drawn, as thick as all of them.
+    pub every: u64,
+}
+
 /// A puff in the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ball {
+    number: u64,
     at: DVec3,
     radius_m: f64,
     thick: f64,
@@ -67,6 +77,7 @@ impl Plumes {
                     vent * lie.exaggeration + (z - vent) * wider,
                 );
                 Ball {
+                    number: puff.number,
                     at,
                     radius_m: puff.radius_m * wider,
                     thick: THICK * density * puff.opacity,
@@ -81,14 +92,15 @@ impl Plumes {
     }
 
     /// The puffs of a moment, the farthest from the eye first, with what stands between them and the light.
-    pub fn corners(&self, seconds: f64, density: f64, lie: &Lie, eye: DVec3, light: DVec3) -> Vec<Corner> {
-        let mut balls = self.balls(seconds, density, lie);
+    pub fn corners(&self, seconds: f64, look: Look, lie: &Lie, eye: DVec3, light: DVec3) -> Vec<Corner> {
+        let mut balls = self.balls(seconds, look.density * look.every as f64, lie);
+        balls.retain(|ball| ball.number % look.every == 0);
         balls.sort_by(|a, b| (b.at - eye).length_squared().total_cmp(&(a.at - eye).length_squared()));
         let every = balls.len().div_ceil(ASKED).max(1);
         let asked: Vec<Ball> = balls.iter().step_by(every).copied().collect();
         let corner = |ball: &Ball| {
             let [sun, up] = [light, DVec3::Z].map(|way| every as f64 * depth(ball, &asked, way));
-            let Ball { at, radius_m, thick, spent, turn, picture } = *ball;
+            let Ball { number: _, at, radius_m, thick, spent, turn, picture } = *ball;
             let picture = picture.rem_euclid(puff::LAYERS as f64);
             [at.x, at.y, at.z, radius_m, thick, spent, turn, picture, sun, up].map(|v| v as f32)
         };
@@ -197,6 +209,10 @@ mod tests {
         world
     }
 
+    fn look(density: f64) -> Look {
+        Look { density, every: 1 }
+    }
+
     const LIE: Lie = Lie {
         extent_m: [400.0; 2],
         cell_m: 100.0,
@@ -210,22 +226,24 @@ mod tests {
     fn the_farthest_puff_comes_first_and_moments_are_told_alone() {
         let plumes = Plumes::of(&world());
         let eye = DVec3::new(300.0, -500.0, 80.0);
-        let puffs = plumes.corners(0.0, 1.0, &LIE, eye, DVec3::X);
+        let puffs = plumes.corners(0.0, look(1.0), &LIE, eye, DVec3::X);
         let away = |c: &Corner| DVec3::new(c[0].into(), c[1].into(), c[2].into()).distance(eye);
         assert!(puffs.len() > 60 && puffs.windows(2).all(|p| away(&p[0]) >= away(&p[1]) - 1e-3));
-        assert_eq!(puffs, plumes.corners(0.0, 1.0, &LIE, eye, DVec3::X));
-        assert!(plumes.corners(0.0, 0.0, &LIE, eye, DVec3::X).is_empty());
+        assert_eq!(puffs, plumes.corners(0.0, look(1.0), &LIE, eye, DVec3::X));
+        let half = plumes.corners(0.0, Look { density: 1.0, every: 2 }, &LIE, eye, DVec3::X);
+        assert!(half.len().abs_diff(puffs.len() / 2) <= 4);
+        assert!(plumes.corners(0.0, look(0.0), &LIE, eye, DVec3::X).is_empty());
         // It goes on while the world stands still, and ends where it has ended.
-        assert!(plumes.corners(100.0, 1.0, &LIE, eye, DVec3::X).len() > 60);
+        assert!(plumes.corners(100.0, look(1.0), &LIE, eye, DVec3::X).len() > 60);
         let mut over = world();
         over.time_yr = 200.0 / YEAR_S;
-        assert!(Plumes::of(&over).corners(0.0, 1.0, &LIE, eye, DVec3::X).is_empty());
+        assert!(Plumes::of(&over).corners(0.0, look(1.0), &LIE, eye, DVec3::X).is_empty());
     }
 
     #[test]
     fn the_side_away_from_the_light_lies_in_the_shade() {
         let plumes = Plumes::of(&world());
-        let puffs = plumes.corners(0.0, 1.0, &LIE, DVec3::new(0.0, -900.0, 80.0), DVec3::X);
+        let puffs = plumes.corners(0.0, look(1.0), &LIE, DVec3::new(0.0, -900.0, 80.0), DVec3::X);
         let middle = puffs.iter().map(|p| p[0]).sum::<f32>() / puffs.len() as f32;
         let mean = |lee: bool| {
             let side: Vec<f32> = puffs.iter().filter(|p| (p[0] < middle) == lee).map(|p| p[8]).collect();
