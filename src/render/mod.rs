@@ -23,6 +23,8 @@ mod shade;
 mod shader;
 mod shafts;
 mod terrain;
+#[cfg(test)]
+mod tests;
 mod textures;
 
 pub use camera::Camera;

@@ -25,9 +25,13 @@ pub(super) const ENTRIES: &[(&str, &str)] = sources!("":
 pub(super) fn source(name: &str) -> String {
     let (_, text) = ENTRIES.iter().find(|(known, _)| *known == name).expect("every pass names one of its shaders");
     if let Ok(dir) = std::env::var("LIVE_SHADERS") { return live(&dir, name); } // DEV-ONLY
+    expanded(text)
+}
+
+/// A text with its imports.
+pub(super) fn expanded(text: &'static str) -> String {
     let mut out = String::new();
-    let mut taken = Vec::new();
-    expand(text, &mut taken, &mut out);
+    expand(text, &mut Vec::new(), &mut out);
     out
 }
 
@@ -59,9 +63,14 @@ fn expand(text: &'static str, taken: &mut Vec<&'static str>, out: &mut String) {
 impl Gpu {
     /// A compiled shader.
     pub(super) fn shader(&self, name: &str) -> ShaderModule {
+        self.compile(name, source(name))
+    }
+
+    /// A compiled shader of this text.
+    pub(super) fn compile(&self, name: &str, text: String) -> ShaderModule {
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
-            source: wgpu::ShaderSource::Wgsl(source(name).into()),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
         })
     }
 }
