@@ -37,6 +37,8 @@ struct Frame {
     shallow: vec4<f32>,
     // Glow: brightness from which light is spread, width of the knee there, share that is spread, levels.
     bloom: vec4<f32>,
+    // Water: 1 where it mirrors the land, size of the looks' pattern, 1 for inland water, reach of the rivers' map, m.
+    inland: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -12,7 +12,7 @@ macro_rules! sources {
 }
 
 /// What is imported.
-const LIBRARY: &[(&str, &str)] = sources!("lib/": "frame", "noise", "sky", "ground", "light", "splat", "haze", "lens", "bright");
+const LIBRARY: &[(&str, &str)] = sources!("lib/": "frame", "noise", "sky", "ground", "light", "splat", "haze", "lens", "bright", "waves", "mirror", "water");
 
 /// What is run.
 pub(super) const ENTRIES: &[(&str, &str)] = sources!("":
