@@ -1,6 +1,7 @@
 #import light
 #import haze
 #import splat
+#import river
 
 // Ground: four covers by their shares, lit, in haze.
 
@@ -114,6 +115,7 @@ fn main(in: Vertex) -> @location(0) vec4<f32> {
     let open = textureSampleLevel(state_map, smooth_clamp, in.uv, 0.0).a;
     let sun = sun_share(in.uv, 0.0);
     var colour = lit(surface.albedo, surface.normal, open, sun);
+    colour = with_river(colour, in.at, in.uv, slope, sun);
     colour = burning(in.at, in.uv, colour);
     return vec4<f32>(hazed(colour, in.at), 1.0);
 }

@@ -163,7 +163,7 @@ impl<const N: usize> Average for [f32; N] {
     }
 }
 
-impl Average for [u8; 4] {
+impl<const N: usize> Average for [u8; N] {
     fn mean(four: [Self; 4]) -> Self {
         std::array::from_fn(|c| (four.iter().map(|v| u32::from(v[c])).sum::<u32>().div_ceil(4)) as u8)
     }

@@ -18,11 +18,13 @@ mod hillshade;
 mod land;
 mod passes;
 mod renderer;
+mod rivers;
 mod sea;
 mod shade;
 mod shader;
 mod terrain;
 mod textures;
+mod water;
 
 pub use camera::Camera;
 pub use frame::{Lights, Moment};

@@ -51,6 +51,8 @@ struct Set {
     side: RenderPipeline,
     backdrop: RenderPipeline,
     sea: RenderPipeline,
+    sea_side: RenderPipeline,
+    lake: RenderPipeline,
 }
 
 struct SkyTexture {
@@ -215,6 +217,10 @@ impl Renderer {
         };
         let patches = land.tree.select(&seen);
         let patch_buffer = gpu.buffer("patches", &patches, wgpu::BufferUsages::VERTEX);
+        let wet: Vec<Patch> =
+            patches.iter().filter(|patch| land.inland.as_ref().is_some_and(|inland| inland.touches(patch))).copied().collect();
+        let wet_count = wet.len() as u32;
+        let wet_buffer = (wet_count > 0).then(|| gpu.buffer("wet patches", &wet, wgpu::BufferUsages::VERTEX));
         let set = &self.sets[usize::from(targets.samples > 1)];
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let around = match scene.surround {
@@ -241,6 +247,16 @@ impl Renderer {
             if scene.water.sea && land.lie.range_m[0] < land.lie.sea_m {
                 pass.set_pipeline(&set.sea);
                 self.sea.draw(&mut pass, around);
+                if !around {
+                    pass.set_pipeline(&set.sea_side);
+                    pass.set_vertex_buffer(0, land.walls.slice(..));
+                    pass.draw(0..land.wall_corners, 0..1);
+                }
+            }
+            if let Some(wet) = &wet_buffer {
+                pass.set_pipeline(&set.lake);
+                pass.set_vertex_buffer(0, wet.slice(..));
+                pass.draw_indexed(0..self.index_count, 0, 0..wet_count);
             }
         }
         if frame.bloom[2] > 0.0 {
@@ -295,17 +311,17 @@ impl Renderer {
 impl Set {
     fn new(gpu: &Gpu, samples: u32, [frame, ground, covers]: [&BindGroupLayout; 3]) -> Self {
         let attribute = |location, offset, format| wgpu::VertexAttribute { format, offset, shader_location: location };
-        let patches = [attribute(0, 0, VertexFormat::Float32x4), attribute(1, 16, VertexFormat::Float32x4)];
-        let patches = wgpu::VertexBufferLayout {
+        let on_patches = [attribute(0, 0, VertexFormat::Float32x4), attribute(1, 16, VertexFormat::Float32x4)];
+        let patches = || wgpu::VertexBufferLayout {
             array_stride: size_of::<Patch>() as u64,
             step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &patches,
+            attributes: &on_patches,
         };
-        let walls = [attribute(0, 0, VertexFormat::Float32x4)];
-        let walls = wgpu::VertexBufferLayout {
+        let on_walls = [attribute(0, 0, VertexFormat::Float32x4)];
+        let walls = || wgpu::VertexBufferLayout {
             array_stride: 16,
             step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &walls,
+            attributes: &on_walls,
         };
         let corners = [attribute(0, 0, VertexFormat::Float32x2), attribute(1, 8, VertexFormat::Float32)];
         let corners = wgpu::VertexBufferLayout {
@@ -316,11 +332,22 @@ impl Set {
         let opaque = |shaders, groups: &[&BindGroupLayout], vertices: &[Option<wgpu::VertexBufferLayout>], strip| {
             gpu.pipeline(&Pass { shaders, groups, vertices, strip, depth: Some(true), samples, ..Pass::default() })
         };
-        let over = Some(wgpu::BlendState::ALPHA_BLENDING);
+        let water = |shaders, vertices: wgpu::VertexBufferLayout, strip| {
+            gpu.pipeline(&Pass {
+                shaders,
+                groups: &[frame, ground],
+                vertices: &[Some(vertices)],
+                strip,
+                blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+                depth: Some(true),
+                samples,
+                ..Pass::default()
+            })
+        };
         Self {
             samples,
-            ground: opaque(["ground_vertex", "ground"], &[frame, ground, covers], &[Some(patches)], false),
-            side: opaque(["side_vertex", "side"], &[frame, ground], &[Some(walls)], true),
+            ground: opaque(["ground_vertex", "ground"], &[frame, ground, covers], &[Some(patches())], false),
+            side: opaque(["side_vertex", "side"], &[frame, ground], &[Some(walls())], true),
             backdrop: gpu.pipeline(&Pass {
                 shaders: ["cover", "backdrop"],
                 groups: &[frame],
@@ -328,15 +355,9 @@ impl Set {
                 samples,
                 ..Pass::default()
             }),
-            sea: gpu.pipeline(&Pass {
-                shaders: ["sea_vertex", "sea"],
-                groups: &[frame, ground],
-                vertices: &[Some(corners)],
-                blend: over,
-                depth: Some(true),
-                samples,
-                ..Pass::default()
-            }),
+            sea: water(["sea_vertex", "sea"], corners, false),
+            sea_side: water(["sea_side_vertex", "sea_side"], walls(), true),
+            lake: water(["lake_vertex", "lake"], patches(), false),
         }
     }
 }

@@ -12,12 +12,12 @@ macro_rules! sources {
 }
 
 /// What is imported.
-const LIBRARY: &[(&str, &str)] = sources!("lib/": "frame", "noise", "sky", "ground", "light", "splat", "haze", "lens", "bright", "waves", "mirror", "water");
+const LIBRARY: &[(&str, &str)] = sources!("lib/": "frame", "noise", "sky", "ground", "light", "splat", "haze", "lens", "bright", "waves", "mirror", "water", "river");
 
 /// What is run.
 pub(super) const ENTRIES: &[(&str, &str)] = sources!("":
     "cover", "hillshade", "ground_vertex", "ground", "side_vertex", "side", "backdrop",
-    "sea_vertex", "sea", "shrink", "spread", "tone",
+    "sea_vertex", "sea", "sea_side_vertex", "sea_side", "lake_vertex", "lake", "shrink", "spread", "tone",
 );
 
 /// The whole text of an entry.
