@@ -18,8 +18,14 @@ fn main(in: Vertex) -> @location(0) vec4<f32> {
     let slope = textureSampleLevel(slope_map, smooth_clamp, in.uv, 0.5).rg * frame.map.w;
     let longest = clamp(0.25 * frame.water.z, 4.0, 40.0);
     // Fresh water is less clear than the sea, and lies in the lee.
-    let water = Water(in.at, in.uv, deep, length(slope), 0.4 * frame.water.y, longest, 0.55 * frame.water.x,
+    let water = Water(in.at, in.uv, deep, length(slope), 0.4 * frame.water.y, longest, 0.3 * frame.water.x,
         sun_share(in.uv, deep), 0.0, 1.0);
-    let colour = watered(water, pixel, view);
+    var colour = watered(water, pixel, view);
+    // Where snow lies all year lakes are frozen.
+    let ice = textureSampleLevel(state_map, smooth_clamp, in.uv, 0.0).r;
+    if (ice > 0.0) {
+        let white = vec3<f32>(0.62, 0.70, 0.76) * (1.0 + 0.15 * fbm(in.at.xy / (40.0 * longest), 4).x);
+        colour = mix(colour, hazed(lit(white, vec3<f32>(0.0, 0.0, 1.0), 1.0, water.sun), in.at), 0.9 * ice);
+    }
     return vec4<f32>(colour, smooth_between(0.0, 0.12 * frame.map.w, deep));
 }

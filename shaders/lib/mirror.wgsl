@@ -16,24 +16,32 @@ fn land_seen(uv: vec2<f32>, at: vec3<f32>) -> vec3<f32> {
     return lit(ground, normal, state.a, sun_share(uv, 0.0));
 }
 
-// Light from a direction that leads up from the water: steps grow with the distance, and read coarser heights.
-fn mirrored(start: vec3<f32>, ray: vec3<f32>, inside: f32) -> vec3<f32> {
+// Light from a direction that leads up from the water: steps grow with the distance, and read coarser heights. A rough
+// surface mirrors a cone, of which the land hides a part: by how far the ray passes over or under it, as soft shadows are.
+fn mirrored(start: vec3<f32>, ray: vec3<f32>, roughness: f32, inside: f32) -> vec3<f32> {
     let sky = sky_light(ray);
-    if (frame.inland.x == 0.0 || inside < 0.5 || ray.z > 0.75) { return sky; }
+    if (frame.inland.x == 0.0 || inside < 0.5 || ray.z > 0.8) { return sky; }
     let cell = frame.air.w;
     let flat = max(length(ray.xy), 1e-3);
     let reach = 0.5 * max(frame.map.x, frame.map.y);
     let first = 0.8 * cell;
     let grows = pow(reach / first, 1.0 / f32(MIRROR_STEPS - 1));
-    let dither = fract(52.9829189 * fract(dot(start.xy / frame.air.w, vec2<f32>(6.711056, 0.583715))));
+    let width = 0.012 + 0.7 * roughness;
     var before = 0.0;
-    var step = first * mix(0.7, 1.0, dither);
+    var step = first;
+    var most = -1.0;
+    var met = 0.0;
     for (var k = 0; k < MIRROR_STEPS; k++) {
         let at = start + ray * (step / flat);
         let uv = place_of(at.xy);
         if (any(uv < vec2<f32>(0.0)) || any(uv > vec2<f32>(1.0))) { break; }
-        let level = i32(clamp(log2(step * (grows - 1.0) / cell), 0.0, 6.0));
-        if (height_at(uv, level) > at.z) {
+        let level = i32(clamp(log2(step * (grows - 1.0) / cell), 0.0, 5.0));
+        let over = (height_at(uv, level) - at.z) / (step * width);
+        if (over > most) {
+            most = over;
+            met = step;
+        }
+        if (over > 1.0) {
             // Closer by halves.
             var low = before;
             var high = step;
@@ -42,14 +50,16 @@ fn mirrored(start: vec3<f32>, ray: vec3<f32>, inside: f32) -> vec3<f32> {
                 let there = start + ray * (middle / flat);
                 if (height_at(place_of(there.xy), level) > there.z) { high = middle; } else { low = middle; }
             }
-            let met = start + ray * (high / flat);
-            let light = land_seen(place_of(met.xy), met);
-            return through_air(light, start, met, sky);
+            met = high;
+            break;
         }
         before = step;
         step *= grows;
     }
-    return sky;
+    if (most <= -1.0) { return sky; }
+    let at = start + ray * (met / flat);
+    let light = through_air(land_seen(place_of(at.xy), at), start, at, sky);
+    return mix(sky, light, smooth_between(-1.0, 1.0, most));
 }
 
 // Haze on the way from the water to the land it mirrors.

@@ -14,7 +14,7 @@ fn river_share(uv: vec2<f32>, pixel: f32) -> f32 {
     let half = told.y * reach;
     // Great rivers are never thinner than a pixel and a half; brooks may vanish.
     let great = smooth_between(0.02, 0.16, half / (0.25 * reach));
-    let shown = max(half, min(0.75 * pixel, 0.6 * reach) * great);
+    let shown = max(half, min(0.95 * pixel, 0.6 * reach) * great);
     let p = max(pixel, 1e-3);
     return clamp((shown - away) / p + 0.5, 0.0, 1.0) - clamp((-shown - away) / p + 0.5, 0.0, 1.0);
 }
@@ -40,7 +40,7 @@ fn with_river(colour: vec3<f32>, at: vec3<f32>, uv: vec2<f32>, slope: vec2<f32>,
     var ray = reflect(-view, normal);
     ray = normalize(vec3<f32>(ray.xy, max(ray.z, 0.0) + 0.12));
     let down = frame.light.rgb * (max(frame.toward.z, 0.0) * sun) + frame.ambient.rgb;
-    let own = mix(frame.dark.rgb * DEEP, frame.shallow.rgb, 0.12) * vec3<f32>(1.1, 1.0, 0.75);
+    let own = mix(frame.dark.rgb * DEEP, frame.shallow.rgb, 0.22) * vec3<f32>(1.1, 1.0, 0.8);
     var shown = own * down * ((1.0 - mirror) / PI) + sky_light(ray) * mirror;
     shown += glitter(view, ripple, rest) * sun;
     return mix(colour, shown, share);

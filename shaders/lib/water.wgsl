@@ -8,6 +8,9 @@
 
 // Sand on the bed.
 const BED: vec3<f32> = vec3<f32>(0.40, 0.36, 0.27);
+// Mud on the bed of lakes, and the tint of fresh water.
+const MUD: vec3<f32> = vec3<f32>(0.17, 0.15, 0.105);
+const FRESH: vec3<f32> = vec3<f32>(1.25, 1.0, 0.72);
 // How much faster than green the water takes red, green and blue (clear coastal water).
 const ABSORPTION: vec3<f32> = vec3<f32>(3.3, 1.0, 0.78);
 
@@ -28,8 +31,8 @@ struct Water {
     clarity: f32,
     // Share of the sun that reaches it.
     sun: f32,
-    // 1 for foam along its coasts.
-    surf: f32,
+    // 1 for the sea: surf along its coasts, sand on its bed; 0 for fresh water.
+    sea: f32,
     // 1 on the map, 0 beyond it.
     inside: f32,
 }
@@ -48,7 +51,10 @@ fn glitter(view: vec3<f32>, slope: vec2<f32>, rest: f32) -> vec3<f32> {
     let facing = max(dot(half_way, view), 0.0);
     let mirrored = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
     let z2 = half_way.z * half_way.z;
-    return frame.light.rgb * min(mirrored * chance / (4.0 * max(view.z, 0.06) * max(z2 * z2, 0.02)), 40.0);
+    let bright = mirrored * chance / (4.0 * max(view.z, 0.08) * max(z2 * z2, 0.02));
+    // Flanks hide each other the more the rougher they are and the lower the view: glitter has its most.
+    let most = mix(0.1, 1.2, exp(-150.0 * rest));
+    return frame.light.rgb * (bright / (1.0 + bright / most));
 }
 
 // Colour of the water itself over its bed, as a reflectance.
@@ -63,9 +69,9 @@ fn body(water: Water, facing: f32) -> vec3<f32> {
     let through = exp(-ABSORPTION * (0.5 * way * optical));
     // Sand lies in banks, with weed between them.
     let patches = fbm(water.at.xy / (6.0 * frame.water.z), 3).x;
-    let bed = BED * (1.0 + 0.5 * patches) * mix(vec3<f32>(1.0), light * 2.0, 0.35 * (1.0 - exp(-2.5 * optical)));
+    let bed = mix(MUD, BED, water.sea) * (1.0 + 0.5 * patches) * mix(vec3<f32>(1.0), light * 2.0, 0.35 * (1.0 - exp(-2.5 * optical)));
     let shelf = mix(dark * 0.85, mix(dark, light, 0.22), exp(-0.28 * optical));
-    let scattered = mix(shelf, light, 0.45 * exp(-0.9 * optical)) * (1.0 + 0.08 * patches);
+    let scattered = mix(shelf, light, mix(0.12, 0.45, water.sea) * exp(-0.9 * optical)) * mix(FRESH, vec3<f32>(1.0), water.sea) * (1.0 + 0.08 * patches);
     return mix(scattered, bed, through);
 }
 
@@ -106,7 +112,7 @@ fn cells(at: vec2<f32>, depth: f32, clarity: f32) -> vec3<f32> {
 
 // Surf along the coast: broken lines at their distances from the shore, and what they leave between.
 fn surf(water: Water, pixel: f32) -> f32 {
-    if (water.surf <= 0.0 || frame.water.w <= 0.0) { return 0.0; }
+    if (water.sea <= 0.0 || frame.water.w <= 0.0) { return 0.0; }
     let width = max(0.35 * water.longest, 0.8 * pixel);
     let shore = water.depth / max(water.steep, 0.012);
     let away = shore / width;
@@ -116,7 +122,7 @@ fn surf(water: Water, pixel: f32) -> f32 {
     let phase = 3.2 * away + 2.2 * rough - 0.5 * frame.picture.w;
     let lines = smooth_between(0.35, 0.95, 0.5 + 0.5 * sin(phase) + 0.5 * rough);
     let wash = smooth_between(0.45, 1.1, near + 0.5 * rough);
-    return clamp((0.75 * lines * near + 0.7 * wash) * frame.water.w, 0.0, 0.92) * water.surf;
+    return clamp((0.75 * lines * near + 0.7 * wash) * frame.water.w, 0.0, 0.92) * water.sea;
 }
 
 // All of it, in haze; and how much of the ground it hides.
@@ -129,7 +135,7 @@ fn watered(water: Water, pixel: f32, view: vec3<f32>) -> vec3<f32> {
     var ray = reflect(-view, normal);
     // A rough mirror looks higher up the lower the view: flanks turned to the eye are seen, the others hide.
     ray = normalize(vec3<f32>(ray.xy, max(ray.z, 0.0) + 0.9 * roughness + 0.004));
-    let reflected = mirrored(water.at, ray, water.inside);
+    let reflected = mirrored(water.at, ray, roughness, water.inside);
     let down = frame.light.rgb * (max(frame.toward.z, 0.0) * water.sun) + frame.ambient.rgb;
     var colour = body(water, facing) * down * ((1.0 - share) / PI);
     colour += reflected * share + glitter(view, wave.slope, wave.rest) * water.sun;

@@ -29,7 +29,7 @@ fn turned(by: f32) -> vec2<f32> {
 
 // Steepness of one octave of ripples: wind makes more of them steep, not each without end (after Cox and Munk 1954).
 fn ripple_steepness(height: f32) -> f32 {
-    return 0.04 * sqrt(height);
+    return 0.05 * sqrt(height);
 }
 
 // Waves at a place, for pixels of a width (m), of a height (1 a breeze) and a longest length (m).
@@ -40,7 +40,7 @@ fn waves(at: vec2<f32>, pixel: f32, height: f32, longest: f32) -> Waves {
     // Swell: sines of deep water, whose phases and heights wander so that no pattern returns.
     let wander = value_noise(at / (3.1 * longest) + 7.7).x;
     let wander2 = value_noise(at / (5.3 * longest) - 3.1).x;
-    let seen = 1.0 - smooth_between(0.15, 0.5, pixel / longest);
+    let seen = 1.0 - smooth_between(0.06, 0.3, pixel / longest);
     if (seen > 0.0) {
         var length = longest;
         for (var k = 0; k < 4; k++) {
@@ -48,8 +48,8 @@ fn waves(at: vec2<f32>, pixel: f32, height: f32, longest: f32) -> Waves {
             let number = 2.0 * PI / length;
             let phase = number * dot(way, at) - sqrt(9.81 * number) * time + 2.3 * f32(k)
                 + 3.4 * (wander * cos(1.9 * f32(k)) + wander2 * sin(1.3 * f32(k) + 0.5));
-            let steep = 0.04 * height * (0.62 + 0.38 * sin(1.7 * f32(k) + 4.0 * wander2 - 2.5 * wander));
-            let shown = 1.0 - smooth_between(0.15, 0.5, pixel / length);
+            let steep = 0.026 * height * (0.62 + 0.38 * sin(1.7 * f32(k) + 4.0 * wander2 - 2.5 * wander));
+            let shown = 1.0 - smooth_between(0.06, 0.3, pixel / length);
             // Crests are sharper than troughs.
             let sharp = 1.0 + 0.45 * min(height, 2.0) * sin(phase) * 0.5;
             out.slope += way * (steep * sharp * cos(phase) * shown);
@@ -58,7 +58,7 @@ fn waves(at: vec2<f32>, pixel: f32, height: f32, longest: f32) -> Waves {
             length *= 0.67;
         }
     } else {
-        out.rest += 0.0012 * height * height;
+        out.rest += 0.0005 * height * height;
     }
     // Ripples: stretched noise that drifts, from the longest a pixel shows down to its own size.
     let steep = ripple_steepness(height);
@@ -66,7 +66,7 @@ fn waves(at: vec2<f32>, pixel: f32, height: f32, longest: f32) -> Waves {
     let whole = floor(level);
     let share = level - whole;
     var length = pow(SHORTER, whole);
-    let count = i32(frame.shallow.w) + 1;
+    let count = i32(frame.shallow.w) + 2;
     for (var k = 0; k < count; k++) {
         var shown = (1.0 - smooth_between(0.12, 0.4, pixel / length)) * (1.0 - smooth_between(0.25, 0.7, length / longest))
             * smooth_between(0.5 * CAPILLARY_M, CAPILLARY_M, length);
@@ -85,22 +85,32 @@ fn waves(at: vec2<f32>, pixel: f32, height: f32, longest: f32) -> Waves {
     }
     let octaves = log(longest / CAPILLARY_M) / log(SHORTER);
     let hidden = clamp(log(2.5 * pixel / CAPILLARY_M) / log(SHORTER), 0.0, octaves);
-    out.rest += steep * steep * 1.4 * hidden;
+    out.rest += steep * steep * 0.9 * hidden;
     return out;
 }
 
-// Share of the surface that breaks, 0 to 1: crests of a strong wind, and streaks along it.
+// Noise in two octaves that is long in the wind's direction.
+fn streaked(along: f32, across: f32) -> f32 {
+    return value_noise(vec2<f32>(along, across)).x * 0.65 + value_noise(vec2<f32>(along * 2.1 + 5.7, across * 2.3 - 3.9)).x * 0.35;
+}
+
+// Share of the surface that breaks, 0 to 1: torn crests of a strong wind, and streaks that it draws out of them.
 fn whitecaps(at: vec2<f32>, pixel: f32, height: f32, longest: f32, crest: f32) -> f32 {
-    let strength = clamp((height - 1.1) * 0.5, 0.0, 1.6);
+    let strength = clamp((height - 1.1) / 2.9, 0.0, 1.5);
     if (strength <= 0.0) { return 0.0; }
     let time = frame.picture.w;
+    let mean = 0.06 * strength;
+    let near = 1.0 - smooth_between(0.03, 0.2, pixel / longest);
+    if (near <= 0.0) { return mean; }
     let along = dot(at, WIND);
     let across = dot(at, vec2<f32>(-WIND.y, WIND.x));
-    let rough = fbm(vec2<f32>(along - 1.5 * time, across) / (0.13 * longest), 4).x;
-    let caps = smooth_between(0.62 - 0.28 * strength, 0.95 - 0.2 * strength, crest + 0.9 * rough);
-    let streaks = fbm(vec2<f32>(along / (1.1 * longest), across / (0.07 * longest)) + 0.25 * rough, 3).x;
-    let torn = smooth_between(0.12, 0.5, streaks + 0.35 * rough) * 0.28 * clamp(strength - 0.35, 0.0, 1.0);
-    let near = 1.0 - smooth_between(0.05, 0.25, pixel / longest);
-    let mean = 0.05 * strength * strength;
-    return clamp(mix(mean, max(caps * 0.85 * min(strength, 1.0), torn), near), 0.0, 0.9);
+    let rough = fbm(vec2<f32>(along - 1.5 * time, across) / (0.22 * longest), 5).x;
+    let lace = fbm(at / (0.035 * longest), 4).x;
+    let over = crest + 1.1 * rough - (1.15 - 0.33 * strength);
+    let caps = smooth_between(0.0, 0.22, over) * (0.55 + 0.9 * lace) + smooth_between(0.25, 0.6, over) * 0.5;
+    // Foam that stays behind the crests.
+    let left = smooth_between(-0.35, 0.25, over) * smooth_between(0.02, 0.28, lace) * 0.35;
+    let streaks = streaked(along / (1.6 * longest), across / (0.055 * longest) + 1.2 * rough);
+    let torn = smooth_between(0.18, 0.6, streaks) * smooth_between(-0.25, 0.3, lace) * 0.42 * clamp(1.6 * strength - 0.5, 0.0, 1.0);
+    return clamp(mix(mean, max(caps, max(left, torn)), near), 0.0, 0.88);
 }
