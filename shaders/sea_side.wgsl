@@ -38,16 +38,17 @@ fn main(in: Vertex) -> @location(0) vec4<f32> {
     let clarity = frame.water.x;
     let longest = 12.0 * clarity;
     let way = way_behind(in.at, look, longest);
-    let hidden = 1.0 - exp(-0.45 * way / clarity);
+    // What lies deep is dark: no light comes up from it.
+    let hidden = 1.0 - exp(-0.45 * (way + 1.5 * depth) / clarity);
     // Light fades with depth, but a cut is lit from its side too.
     let facing = max(dot(outward, frame.toward.xy), 0.0);
     let down = frame.light.rgb * (0.55 * max(frame.toward.z, 0.0) + 0.45 * facing) + frame.ambient.rgb * 0.7;
     let optical = depth / clarity;
-    let colour = mix(frame.dark.rgb * vec3<f32>(1.8, 1.8, 1.4), frame.shallow.rgb * 0.8, exp(-0.35 * optical));
-    let faded = mix(0.35, 1.0, exp(-0.08 * optical));
+    let colour = mix(frame.dark.rgb * vec3<f32>(4.0, 3.2, 2.2), frame.shallow.rgb, exp(-0.25 * optical));
+    let faded = mix(0.55, 1.0, exp(-0.04 * optical));
     // The edge of the surface catches the light.
     let pixel = distance(in.at, frame.eye.xyz) * frame.eye.w;
     let edge = 0.5 * (1.0 - smooth_between(0.0, 2.0 * pixel, depth));
     let shown = colour * faded * down / PI + edge * frame.ambient.rgb / PI;
-    return vec4<f32>(hazed(shown, in.at), clamp(0.3 + 0.68 * hidden + edge, 0.0, 0.98));
+    return vec4<f32>(hazed(shown, vec3<f32>(in.at.xy, frame.map.z)), clamp(0.3 + 0.68 * hidden + edge, 0.0, 0.98));
 }

@@ -42,6 +42,6 @@ fn with_river(colour: vec3<f32>, at: vec3<f32>, uv: vec2<f32>, slope: vec2<f32>,
     let down = frame.light.rgb * (max(frame.toward.z, 0.0) * sun) + frame.ambient.rgb;
     let own = mix(frame.dark.rgb * DEEP, frame.shallow.rgb, 0.22) * vec3<f32>(1.1, 1.0, 0.8);
     var shown = own * down * ((1.0 - mirror) / PI) + sky_light(ray) * mirror;
-    shown += glitter(view, ripple, rest) * sun;
+    shown += glitter(view, ripple, rest, pixel) * sun;
     return mix(colour, shown, share);
 }

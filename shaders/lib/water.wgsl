@@ -15,7 +15,7 @@ const FRESH: vec3<f32> = vec3<f32>(1.25, 1.0, 0.72);
 const ABSORPTION: vec3<f32> = vec3<f32>(3.3, 1.0, 0.78);
 
 // What deep water sends back of the light, to the dark colour as it is seen: more green, as mirrored blue is added to it.
-const DEEP: vec3<f32> = vec3<f32>(2.2, 2.1, 1.6);
+const DEEP: vec3<f32> = vec3<f32>(3.8, 2.2, 1.45);
 
 // A piece of water.
 struct Water {
@@ -43,7 +43,7 @@ fn fresnel(facing: f32, roughness: f32) -> f32 {
 }
 
 // What the surface mirrors of the sun: Gaussian slopes, of which those that mirror it are seen as one.
-fn glitter(view: vec3<f32>, slope: vec2<f32>, rest: f32) -> vec3<f32> {
+fn glitter(view: vec3<f32>, slope: vec2<f32>, rest: f32, pixel: f32) -> vec3<f32> {
     let half_way = normalize(view + frame.toward.xyz);
     let spread = rest + 0.0002 + 0.25 * frame.toward.w * frame.toward.w;
     let off = half_way.xy / max(half_way.z, 0.05) + slope;
@@ -53,8 +53,20 @@ fn glitter(view: vec3<f32>, slope: vec2<f32>, rest: f32) -> vec3<f32> {
     let z2 = half_way.z * half_way.z;
     let bright = mirrored * chance / (4.0 * max(view.z, 0.08) * max(z2 * z2, 0.02));
     // Flanks hide each other the more the rougher they are and the lower the view: glitter has its most.
-    let most = mix(0.1, 1.2, exp(-150.0 * rest));
+    let most = mix(mix(0.22, 0.06, smooth_between(20.0, 500.0, pixel)), 1.2, exp(-150.0 * rest));
     return frame.light.rgb * (bright / (1.0 + bright / most));
+}
+
+// Glitter is made of sparks: a share that varies from pixel to pixel, one on the mean.
+fn sparkle(at: vec2<f32>, pixel: f32) -> f32 {
+    let level = log2(2.5 * pixel);
+    let size = exp2(floor(level));
+    let time = frame.picture.w;
+    let a = value_noise(at / size + 0.9 * time).x;
+    let b = value_noise(at / (2.0 * size) - 0.7 * time).x;
+    let n = mix(a, b, level - floor(level));
+    // From so far away that a pixel is wider than a wave there are only means.
+    return mix(0.45 + 1.65 * n * n * (1.0 + n), 1.0, smooth_between(1.5, 16.0, pixel));
 }
 
 // Colour of the water itself over its bed, as a reflectance.
@@ -136,9 +148,13 @@ fn watered(water: Water, pixel: f32, view: vec3<f32>) -> vec3<f32> {
     // A rough mirror looks higher up the lower the view: flanks turned to the eye are seen, the others hide.
     ray = normalize(vec3<f32>(ray.xy, max(ray.z, 0.0) + 0.9 * roughness + 0.004));
     let reflected = mirrored(water.at, ray, roughness, water.inside);
-    let down = frame.light.rgb * (max(frame.toward.z, 0.0) * water.sun) + frame.ambient.rgb;
-    var colour = body(water, facing) * down * ((1.0 - share) / PI);
-    colour += reflected * share + glitter(view, wave.slope, wave.rest) * water.sun;
+    let down = frame.light.rgb * (max(dot(mix(vec3<f32>(0.0, 0.0, 1.0), normal, 0.6), frame.toward.xyz), 0.0) * water.sun) + frame.ambient.rgb;
+    // Light comes through crests, and troughs have less.
+    let swell = clamp(1.0 + 0.28 * wave.crest * min(water.height, 2.5), 0.4, 1.9);
+    var colour = body(water, facing) * down * (swell * (1.0 - share) / PI);
+    // Gusts roughen some of the sea more than the rest.
+    let slick = 1.0 + 0.45 * fbm(water.at.xy / (22.0 * water.longest), 3).x;
+    colour += reflected * share + glitter(view, wave.slope, wave.rest * slick, pixel) * (water.sun * sparkle(water.at.xy, pixel));
     let caps = whitecaps(water.at.xy, pixel, water.height, water.longest, wave.crest);
     let foam = max(surf(water, pixel), caps);
     colour = mix(colour, down * (0.72 / PI), foam);

@@ -29,7 +29,7 @@ fn turned(by: f32) -> vec2<f32> {
 
 // Steepness of one octave of ripples: wind makes more of them steep, not each without end (after Cox and Munk 1954).
 fn ripple_steepness(height: f32) -> f32 {
-    return 0.05 * sqrt(height);
+    return 0.09 * sqrt(height);
 }
 
 // Waves at a place, for pixels of a width (m), of a height (1 a breeze) and a longest length (m).
@@ -44,11 +44,11 @@ fn waves(at: vec2<f32>, pixel: f32, height: f32, longest: f32) -> Waves {
     if (seen > 0.0) {
         var length = longest;
         for (var k = 0; k < 4; k++) {
-            let way = turned(0.55 * sin(2.4 * f32(k) + 0.4));
+            let way = turned(0.8 * sin(2.4 * f32(k) + 0.4));
             let number = 2.0 * PI / length;
             let phase = number * dot(way, at) - sqrt(9.81 * number) * time + 2.3 * f32(k)
                 + 3.4 * (wander * cos(1.9 * f32(k)) + wander2 * sin(1.3 * f32(k) + 0.5));
-            let steep = 0.026 * height * (0.62 + 0.38 * sin(1.7 * f32(k) + 4.0 * wander2 - 2.5 * wander));
+            let steep = 0.032 * height * (0.62 + 0.38 * sin(1.7 * f32(k) + 4.0 * wander2 - 2.5 * wander));
             let shown = 1.0 - smooth_between(0.06, 0.3, pixel / length);
             // Crests are sharper than troughs.
             let sharp = 1.0 + 0.45 * min(height, 2.0) * sin(phase) * 0.5;
@@ -76,16 +76,16 @@ fn waves(at: vec2<f32>, pixel: f32, height: f32, longest: f32) -> Waves {
             let way = turned(-0.95 + 0.62 * odd);
             let across = vec2<f32>(-way.y, way.x);
             let speed = 0.55 * sqrt(9.81 * length / (2.0 * PI));
-            let p = vec2<f32>(dot(at, way) - speed * time, dot(at, across) * 0.55) / length;
+            let p = vec2<f32>(dot(at, way) - speed * time, dot(at, across) * 0.7) / length;
             let n = value_noise(p + 13.7 * odd + 0.6 * wander);
-            out.slope += (way * n.y + across * (0.55 * n.z)) * (steep * shown);
+            out.slope += (way * n.y + across * (0.7 * n.z)) * (steep * shown);
             out.crest += 0.16 * n.x * shown;
         }
         length /= SHORTER;
     }
-    let octaves = log(longest / CAPILLARY_M) / log(SHORTER);
+    let octaves = min(log(longest / CAPILLARY_M) / log(SHORTER), 7.0);
     let hidden = clamp(log(2.5 * pixel / CAPILLARY_M) / log(SHORTER), 0.0, octaves);
-    out.rest += steep * steep * 0.9 * hidden;
+    out.rest += steep * steep * 0.5 * hidden;
     return out;
 }
 
@@ -100,17 +100,18 @@ fn whitecaps(at: vec2<f32>, pixel: f32, height: f32, longest: f32, crest: f32) -
     if (strength <= 0.0) { return 0.0; }
     let time = frame.picture.w;
     let mean = 0.06 * strength;
-    let near = 1.0 - smooth_between(0.03, 0.2, pixel / longest);
+    let near = 1.0 - smooth_between(0.06, 0.4, pixel / longest);
     if (near <= 0.0) { return mean; }
     let along = dot(at, WIND);
     let across = dot(at, vec2<f32>(-WIND.y, WIND.x));
     let rough = fbm(vec2<f32>(along - 1.5 * time, across) / (0.22 * longest), 5).x;
     let lace = fbm(at / (0.035 * longest), 4).x;
-    let over = crest + 1.1 * rough - (1.15 - 0.33 * strength);
+    let over = 1.3 * crest + 0.9 * rough - (1.35 - 0.35 * strength);
+    let bend = value_noise(at / (0.9 * longest)).x;
     let caps = smooth_between(0.0, 0.22, over) * (0.55 + 0.9 * lace) + smooth_between(0.25, 0.6, over) * 0.5;
     // Foam that stays behind the crests.
     let left = smooth_between(-0.35, 0.25, over) * smooth_between(0.02, 0.28, lace) * 0.35;
-    let streaks = streaked(along / (1.6 * longest), across / (0.055 * longest) + 1.2 * rough);
-    let torn = smooth_between(0.18, 0.6, streaks) * smooth_between(-0.25, 0.3, lace) * 0.42 * clamp(1.6 * strength - 0.5, 0.0, 1.0);
+    let streaks = streaked(along / (1.6 * longest), (across + 0.3 * longest * bend) / (0.07 * longest) + 1.6 * rough);
+    let torn = smooth_between(0.18, 0.6, streaks) * smooth_between(-0.25, 0.3, lace) * 0.3 * clamp(1.6 * strength - 0.5, 0.0, 1.0);
     return clamp(mix(mean, max(caps, max(left, torn)), near), 0.0, 0.88);
 }

@@ -25,6 +25,8 @@ mod shader;
 mod terrain;
 mod textures;
 mod water;
+#[cfg(test)]
+mod water_tests;
 
 pub use camera::Camera;
 pub use frame::{Lights, Moment};

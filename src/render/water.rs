@@ -38,10 +38,9 @@ impl Inland {
                     return [ground + depth[i], depth[i]];
                 }
                 // The shore is where the neighbour's surface meets the ground. Lower ground is not flooded: there the water ends.
-                let surface = match near.index.data[i] as usize {
-                    n if n < depth.len() => (height.data[n] + depth[n]).min(ground - UNDER_M),
-                    _ => ground - UNDER_M,
-                };
+                let nearest = near.index.data[i] as usize;
+                let level = depth.get(nearest).map(|depth| height.data[nearest] + depth);
+                let surface = level.filter(|level| *level <= ground).unwrap_or(ground - UNDER_M);
                 [surface, surface - ground]
             })
             .collect();
