@@ -1,6 +1,7 @@
 #import light
 #import haze
 #import splat
+#import river
 
 // Ground: four covers by their shares, lit, in haze.
 
@@ -24,9 +25,6 @@ struct Surface {
     albedo: vec3<f32>,
     normal: vec3<f32>,
 }
-
-// 0 draft, 1 normal, 2 full; a pipeline each, since a processor that draws runs both ways of every branch.
-override QUALITY: u32 = 2u;
 
 // Sand, gravel or what grows, by the map and the height over the sea.
 fn tints(at: vec3<f32>, cover: vec3<f32>, over_sea: f32) -> array<vec3<f32>, 3> {
@@ -121,6 +119,7 @@ fn main(in: Vertex) -> @location(0) vec4<f32> {
     if (QUALITY > 0u) { surface = covered(in.at, in.uv, normal, state, away, mip); }
     let sun = sun_share(in.uv, 0.0);
     var colour = lit(surface.albedo, surface.normal, state.a, sun);
+    colour = with_river(colour, in.at, in.uv, slope, sun);
     colour = burning(in.at, in.uv, colour);
     return vec4<f32>(hazed(colour, in.at), 1.0);
 }

@@ -7,14 +7,16 @@ use super::{
     Gpu, RenderError,
     ground::{Lie, Rasters, copies},
     passes::{Slot, view},
+    rivers::Rivers,
     shade::{coarse, sweep},
     terrain::Quadtree,
+    water::Inland,
 };
 use crate::{grid::Field, scene::SceneParams, world::World};
 use wgpu::TextureFormat;
 
 /// What the ground's shaders read, in the order of `shaders/lib/ground.wgsl`.
-pub(super) const GROUND: [Slot; 7] = [
+pub(super) const GROUND: [Slot; 8] = [
     Slot::Numbers,
     Slot::Filtered,
     Slot::Filtered,
@@ -22,6 +24,7 @@ pub(super) const GROUND: [Slot; 7] = [
     Slot::Filtered,
     Slot::Filtered,
     Slot::Numbers,
+    Slot::Filtered,
 ];
 /// Cells a side on which shade is worked out, at most.
 const MOST_SHADE: usize = 2048;
@@ -34,6 +37,7 @@ pub struct Land {
     /// Corners of the block's walls, two a cell of the rim.
     pub(super) walls: wgpu::Buffer,
     pub(super) wall_corners: u32,
+    pub(super) inland: Option<Inland>,
     height: Field<f32>,
     shade_on: Field<f32>,
     shade: wgpu::Texture,
@@ -57,8 +61,14 @@ impl Land {
         let shade_size = [shade_on.grid.width, shade_on.grid.height];
         let shade = gpu.raster("shade", TextureFormat::Rg16Float, &[(shade_size, vec![[f16::ZERO; 2]; shade_on.data.len()])]);
         let glow = gpu.raster("glow", TextureFormat::Rgba16Float, &[([1, 1], vec![[f16::ZERO; 4]])]);
-        let water = gpu.raster("water", TextureFormat::Rg32Float, &[([1, 1], vec![[0.0f32; 2]])]);
-        let views = [&heights, &slopes, &cover, &state, &shade, &glow, &water].map(view);
+        let inland = scene.water.inland.then(|| Inland::of(world, &rasters.height)).flatten();
+        let levels = inland.as_ref().map_or_else(|| vec![([1, 1], vec![[0.0; 2]])], |inland| copies(size, inland.cells.clone()));
+        let water = gpu.raster("water", TextureFormat::Rg32Float, &levels);
+        let most = gpu.device.limits().max_texture_dimension_2d as usize;
+        let rivers = scene.water.inland.then(|| Rivers::of(world, &rasters.lie, most)).flatten();
+        let levels = rivers.map_or_else(|| vec![([1, 1], vec![[0; 2]])], |rivers| copies(rivers.size, rivers.texels));
+        let rivers = gpu.raster("rivers", TextureFormat::Rg8Unorm, &levels);
+        let views = [&heights, &slopes, &cover, &state, &shade, &glow, &water, &rivers].map(view);
         let group = gpu.group(layout, views.iter().map(wgpu::BindingResource::TextureView).collect());
         let corners = walls(&rasters.height, &rasters.lie);
         Ok(Self {
@@ -67,6 +77,7 @@ impl Land {
             group,
             walls: gpu.buffer("walls", &corners, wgpu::BufferUsages::VERTEX),
             wall_corners: corners.len() as u32,
+            inland,
             height: rasters.height,
             shade_on,
             shade,

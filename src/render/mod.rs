@@ -18,6 +18,7 @@ mod hillshade;
 mod land;
 mod passes;
 mod renderer;
+mod rivers;
 mod sea;
 mod shade;
 mod shader;
@@ -26,6 +27,9 @@ mod terrain;
 #[cfg(test)]
 mod tests;
 mod textures;
+mod water;
+#[cfg(test)]
+mod water_tests;
 
 pub use camera::Camera;
 pub use frame::{Lights, Moment};

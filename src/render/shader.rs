@@ -12,12 +12,14 @@ macro_rules! sources {
 }
 
 /// Files of the library.
-const LIBRARY: &[(&str, &str)] = sources!("lib/": "frame", "noise", "sky", "ground", "light", "splat", "haze", "lens", "bright");
+const LIBRARY: &[(&str, &str)] = sources!("lib/":
+    "frame", "noise", "sky", "ground", "light", "splat", "haze", "lens", "bright", "waves", "mirror", "water", "river",
+);
 
 /// Entry points.
 pub(super) const ENTRIES: &[(&str, &str)] = sources!("":
     "cover", "hillshade", "ground_vertex", "ground", "side_vertex", "side", "backdrop",
-    "sea_vertex", "sea", "shrink", "spread", "tone",
+    "sea_vertex", "sea", "sea_side_vertex", "sea_side", "lake_vertex", "lake", "shrink", "spread", "tone",
     "distance", "distance_many", "shafts", "soften",
 );
 
@@ -128,7 +130,7 @@ mod tests {
         }
         same!(
             view_projection, from_picture, eye, toward, light, sun, moon, ambient, map, haze, air, picture, cover, cover2,
-            bands, water, dark, shallow, bloom, rays
+            bands, water, dark, shallow, bloom, rays, inland
         );
     }
 }
