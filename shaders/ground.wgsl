@@ -1,6 +1,7 @@
 #import light
 #import haze
 #import splat
+#import river
 #import fire
 
 // Ground: four covers by their shares, lit, in haze.
@@ -25,9 +26,6 @@ struct Surface {
     albedo: vec3<f32>,
     normal: vec3<f32>,
 }
-
-// 0 draft, 1 normal, 2 full; a pipeline each, since a processor that draws runs both ways of every branch.
-override QUALITY: u32 = 2u;
 
 // Sand, gravel or what grows, by the map and the height over the sea.
 fn tints(at: vec3<f32>, cover: vec3<f32>, over_sea: f32) -> array<vec3<f32>, 3> {
@@ -122,5 +120,6 @@ fn main(in: Vertex) -> @location(0) vec4<f32> {
     let sun = sun_share(in.uv, 0.0);
     var colour = lit(surface.albedo, surface.normal, state.a, sun);
     colour += surface.albedo * (1.0 / PI) * fire_light(in.uv, surface.normal) + lava.light;
+    colour = mix(with_river(colour, in.at, in.uv, slope, sun), colour, lava.share);
     return vec4<f32>(hazed(colour, in.at), 1.0);
 }

@@ -10,7 +10,7 @@
 @fragment
 fn main(in: Whole) -> @location(0) vec4<f32> {
     let texel = 1.0 / vec2<f32>(textureDimensions(source));
-    let uv = in.position.xy * 2.0 * texel;
+    let uv = in.at * vec2<f32>(0.5, -0.5) + 0.5;
     var sum = vec3<f32>(0.0);
     for (var k = 0u; k < 4u; k++) {
         let step = vec2<f32>(f32(k & 1u) * 2.0 - 1.0, f32(k >> 1u) * 2.0 - 1.0);

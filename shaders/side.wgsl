@@ -23,5 +23,7 @@ fn main(in: Vertex) -> @location(0) vec4<f32> {
         * (1.0 + 0.22 * band);
     let facing = max(dot(out, frame.toward.xyz), 0.0);
     let light = frame.light.rgb * facing + frame.ambient.rgb * 0.45;
-    return vec4<f32>(hazed(albedo * light / PI, in.at), 1.0);
+    // Under the sea the air is as thick as on it.
+    let open = vec3<f32>(in.at.xy, max(in.at.z, frame.map.z));
+    return vec4<f32>(hazed(albedo * light / PI, open), 1.0);
 }

@@ -8,7 +8,7 @@
 
 @fragment
 fn main(in: Whole) -> @location(0) vec4<f32> {
-    let uv = in.position.xy / vec2<f32>(textureDimensions(source));
+    let uv = in.at * vec2<f32>(0.5, -0.5) + 0.5;
     var sum = vec4<f32>(0.0);
     var weights = 0.0;
     let reach = i32(ceil(3.0 * along.z));

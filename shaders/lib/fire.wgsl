@@ -65,7 +65,7 @@ fn drifting(at: vec2<f32>, size: f32, flow: vec2<f32>, open: f32) -> vec2<f32> {
     let here = at / size;
     let share = abs(2.0 * a - 1.0);
     let one = opened(here - flow * (a - 0.5) + floor(time) * 7.13, open);
-    if (frame.cover2.w < 0.5 || dot(flow, flow) < 1e-4) { return one; }
+    if (QUALITY == 0u || dot(flow, flow) < 1e-4) { return one; }
     let two = opened(here - flow * (b - 0.5) + floor(time + 0.5) * 7.13 + 3.7, open);
     return mix(one, two, share);
 }

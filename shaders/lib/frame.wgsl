@@ -40,11 +40,17 @@ struct Frame {
     bloom: vec4<f32>,
     // Strength of shafts of light, of the lens's glare.
     rays: vec4<f32>,
+    // Water: 1 where it mirrors the land, size of the looks' pattern, 1 for inland water, reach of the rivers' map, m.
+    inland: vec4<f32>,
     // Lava: share of crust; 1 where there is any to draw; 1 where particles are drawn instead of the map's flows.
     lava: vec4<f32>,
     // Light of lava from 400 to 1200 degC in even steps, and how bright that is beside the last.
     heat: array<vec4<f32>, 17>,
 }
+
+// How carefully is drawn: 0 draft, 1 normal, 2 full. Every quality has pipelines of its own, since a processor that draws
+// runs both ways of every branch.
+override QUALITY: u32 = 2u;
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var sky_table: texture_2d<f32>;

@@ -7,8 +7,11 @@
 @group(1) @binding(3) var state_map: texture_2d<f32>;
 @group(1) @binding(4) var shadow_map: texture_2d<f32>;
 @group(1) @binding(5) var glow_map: texture_2d<f32>;
+// Height of the surface of inland water, and its depth, less than 0 in the dry.
 @group(1) @binding(6) var water_map: texture_2d<f32>;
-@group(1) @binding(7) var fire_map: texture_2d<f32>;
+// Nearness to a river's middle, and half its width, in shares of the reach.
+@group(1) @binding(7) var river_map: texture_2d<f32>;
+@group(1) @binding(8) var fire_map: texture_2d<f32>;
 
 // Height at a place of the map, 0 to 1, drawn, m: four cells of a mip.
 fn height_at(uv: vec2<f32>, level: i32) -> f32 {

@@ -38,6 +38,7 @@ pub struct Frame {
     pub shallow: [f32; 4],
     pub bloom: [f32; 4],
     pub rays: [f32; 4],
+    pub inland: [f32; 4],
     pub lava: [f32; 4],
     pub heat: [[f32; 4]; HEATS],
 }
@@ -228,6 +229,13 @@ impl Frame {
             // Brightness is of the picture: what is white at the exposure.
             rays: [shafts, f64::from(u8::from(scene.sky.glare)) * lights.day, 0.0, 0.0].map(|v| v as f32),
             bloom: [scene.bloom.threshold / exposure, 0.5 * scene.bloom.threshold / exposure, bloom, LEVELS as f64].map(|v| v as f32),
+            inland: [
+                f64::from(u8::from(scene.water.reflections && moment.quality == Quality::Full)),
+                scene.water.scale,
+                f64::from(u8::from(scene.water.inland)),
+                lie.river_reach_m(),
+            ]
+            .map(|v| v as f32),
             lava: [scene.lava.crust as f32, f32::from(u8::from(scene.lava.on)), 0.0, 0.0],
             heat: heats(&scene.lava, lights.day),
         }

@@ -82,3 +82,58 @@ impl Glow {
     }
 }
 
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use half::f16;
+
+    fn adapter() -> Option<Gpu> {
+        match Gpu::open() {
+            Ok(gpu) => Some(gpu),
+            Err(error) if std::env::var_os("UPTHRUST_TESTS_NEED_GPU").is_some() => panic!("{error}"),
+            Err(error) => {
+                eprintln!("skipped: {error}");
+                None
+            }
+        }
+    }
+
+    /// The red of what is left after a picture was spread.
+    fn spread(gpu: &Gpu, size: [u32; 2], light: impl Fn(u32, u32) -> f32) -> Vec<f32> {
+        let pixels: Vec<[f16; 4]> = (0..size[0] * size[1])
+            .map(|i| [f16::from_f32(light(i % size[0], i / size[0])); 4])
+            .collect();
+        let picture = gpu.raster("picture", LIGHT, &[(size.map(|n| n as usize), pixels)]);
+        let copies = Copies::new(gpu, size);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        Glow::new(gpu).run(gpu, &mut encoder, &picture, &copies, [0.0, 0.0]);
+        gpu.queue.submit([encoder.finish()]);
+        let bytes = gpu.read_pixels(copies.sum()).unwrap();
+        let halves: Vec<f16> = bytemuck::pod_collect_to_vec(&bytes);
+        halves.chunks_exact(4).map(|p| p[0].to_f32() / copies.levels.len() as f32).collect()
+    }
+
+    #[test]
+    fn an_even_picture_stays_even() {
+        let Some(gpu) = adapter() else { return };
+        for size in [[256, 256], [320, 180], [97, 61]] {
+            let out = spread(&gpu, size, |_, _| 3.0);
+            // Half floats have eleven bits.
+            assert!(out.iter().all(|v| (v - 3.0).abs() < 0.01), "{size:?}");
+        }
+    }
+
+    #[test]
+    fn light_is_moved_not_made() {
+        let Some(gpu) = adapter() else { return };
+        // So large that next to nothing spreads over the rim.
+        let spot = |x: u32, y: u32| if (248..264).contains(&x) && (248..264).contains(&y) { 100.0 } else { 0.0 };
+        let out = spread(&gpu, [512, 512], spot);
+        let sum: f32 = out.iter().sum::<f32>() * 4.0;
+        assert!((sum / (256.0 * 100.0) - 1.0).abs() < 0.02, "{sum}");
+        let at = |x: usize, y: usize| out[y * 256 + x];
+        assert!(at(128, 128) > at(138, 128) && at(138, 128) > at(154, 128) && at(154, 128) > 0.0);
+        assert!((at(138, 128) - at(128, 138)).abs() < 0.02 * at(128, 128));
+    }
+}

@@ -187,10 +187,10 @@ impl Gpu {
         buffer
     }
 
-    /// Reads the bytes of a texture of four bytes a pixel back, row by row.
+    /// Reads the bytes of a texture back, row by row.
     pub(super) fn read_pixels(&self, texture: &Texture) -> Result<Vec<u8>, RenderError> {
         let (width, height) = (texture.width() as usize, texture.height() as usize);
-        let tight = width * 4;
+        let tight = width * texture.format().block_copy_size(None).unwrap_or(4) as usize;
         let padded = tight.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),

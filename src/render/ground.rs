@@ -71,7 +71,12 @@ impl Lie {
 
     /// Depth in which light falls to 37 %: a few metres in nature, more where a map is so wide that no shelf would show.
     pub fn clarity_m(&self) -> f64 {
-        (self.extent_m[0] * 1.2e-4).clamp(6.0, 90.0)
+        (self.extent_m[0] * 1.2e-4).clamp(6.0, 110.0)
+    }
+
+    /// Distance from a river's middle up to which its map tells it, m: so far a river may be widened to be seen.
+    pub fn river_reach_m(&self) -> f64 {
+        1.6e-3 * self.extent_m[0].max(self.extent_m[1])
     }
 
     /// Length of the longest waves: as wind makes them, longer where none would be seen.
@@ -158,7 +163,7 @@ impl<const N: usize> Average for [f32; N] {
     }
 }
 
-impl Average for [u8; 4] {
+impl<const N: usize> Average for [u8; N] {
     fn mean(four: [Self; 4]) -> Self {
         std::array::from_fn(|c| (four.iter().map(|v| u32::from(v[c])).sum::<u32>().div_ceil(4)) as u8)
     }

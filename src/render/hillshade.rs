@@ -151,7 +151,7 @@ fn pipeline(gpu: &Gpu) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::{grid::Grid, world::Layer};
 
@@ -176,7 +176,7 @@ mod tests {
     }
 
     /// An adapter, or nothing and a line about it where one may be missing.
-    fn adapter() -> Option<Gpu> {
+    pub(in crate::render) fn adapter() -> Option<Gpu> {
         match Gpu::open() {
             Ok(gpu) => {
                 println!("on {}", gpu.name());

@@ -9,15 +9,17 @@ use super::{
     ground::{Lie, Rasters, copies},
     lumps::{self, Lump},
     passes::{Slot, view},
+    rivers::Rivers,
     shade::{coarse, sweep},
     smoke::Plumes,
     terrain::Quadtree,
+    water::Inland,
 };
 use crate::{grid::{Field, Grid}, scene::SceneParams, world::World};
 use wgpu::TextureFormat;
 
 /// What the ground's shaders read, in the order of `shaders/lib/ground.wgsl`.
-pub(super) const GROUND: [Slot; 8] = [
+pub(super) const GROUND: [Slot; 9] = [
     Slot::Numbers,
     Slot::Filtered,
     Slot::Filtered,
@@ -25,6 +27,7 @@ pub(super) const GROUND: [Slot; 8] = [
     Slot::Filtered,
     Slot::Filtered,
     Slot::Numbers,
+    Slot::Filtered,
     Slot::Filtered,
 ];
 /// Cells a side on which shade is worked out, at most.
@@ -38,6 +41,7 @@ pub struct Land {
     /// Corners of the block's walls, two a cell of the rim.
     pub(super) walls: wgpu::Buffer,
     pub(super) wall_corners: u32,
+    pub(super) inland: Option<Inland>,
     height: Field<f32>,
     shade_on: Field<f32>,
     shade: wgpu::Texture,
@@ -75,8 +79,14 @@ impl Land {
         let fire = gpu.raster("light of lava", TextureFormat::Rg16Float, &fire::halves(spread_size, spread.clone()));
         let glow = lava.map_or_else(|| vec![([1, 1], vec![[f16::ZERO; 4]])], |lava| fire::halves(size, lava));
         let glow = gpu.raster("lava", TextureFormat::Rgba16Float, &glow);
-        let water = gpu.raster("water", TextureFormat::Rg32Float, &[([1, 1], vec![[0.0f32; 2]])]);
-        let views = [&heights, &slopes, &cover, &state, &shade, &glow, &water, &fire].map(view);
+        let inland = scene.water.inland.then(|| Inland::of(world, &rasters.height)).flatten();
+        let levels = inland.as_ref().map_or_else(|| vec![([1, 1], vec![[0.0; 2]])], |inland| copies(size, inland.cells.clone()));
+        let water = gpu.raster("water", TextureFormat::Rg32Float, &levels);
+        let most = gpu.device.limits().max_texture_dimension_2d as usize;
+        let rivers = scene.water.inland.then(|| Rivers::of(world, &rasters.lie, most)).flatten();
+        let levels = rivers.map_or_else(|| vec![([1, 1], vec![[0; 2]])], |rivers| copies(rivers.size, rivers.texels));
+        let rivers = gpu.raster("rivers", TextureFormat::Rg8Unorm, &levels);
+        let views = [&heights, &slopes, &cover, &state, &shade, &glow, &water, &rivers, &fire].map(view);
         let group = gpu.group(layout, views.iter().map(wgpu::BindingResource::TextureView).collect());
         let corners = walls(&rasters.height, &rasters.lie);
         Ok(Self {
@@ -85,6 +95,7 @@ impl Land {
             group,
             walls: gpu.buffer("walls", &corners, wgpu::BufferUsages::VERTEX),
             wall_corners: corners.len() as u32,
+            inland,
             height: rasters.height,
             shade_on,
             shade,

@@ -23,13 +23,19 @@ mod night;
 mod passes;
 mod puff;
 mod renderer;
+mod rivers;
 mod sea;
 mod shade;
 mod shader;
 mod shafts;
 mod smoke;
 mod terrain;
+#[cfg(test)]
+mod tests;
 mod textures;
+mod water;
+#[cfg(test)]
+mod water_tests;
 
 pub use camera::Camera;
 pub use frame::{Lights, Moment};

@@ -60,6 +60,8 @@ struct Set {
     side: RenderPipeline,
     backdrop: RenderPipeline,
     sea: RenderPipeline,
+    sea_side: RenderPipeline,
+    lake: RenderPipeline,
 }
 
 struct SkyTexture {
@@ -255,6 +257,10 @@ impl Renderer {
         };
         let patches = land.tree.select(&seen); if std::env::var("LIVE_SHADERS").is_ok() { eprintln!("patches {}", patches.len()); } // DEV-ONLY
         let patch_buffer = gpu.buffer("patches", &patches, wgpu::BufferUsages::VERTEX);
+        let wet: Vec<Patch> =
+            patches.iter().filter(|patch| land.inland.as_ref().is_some_and(|inland| inland.touches(patch))).copied().collect();
+        let wet_count = wet.len() as u32;
+        let wet_buffer = (wet_count > 0).then(|| gpu.buffer("wet patches", &wet, wgpu::BufferUsages::VERTEX));
         let set = &self.sets[moment.quality as usize];
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let around = match scene.surround {
@@ -289,6 +295,16 @@ impl Renderer {
             if scene.water.sea && land.lie.range_m[0] < land.lie.sea_m {
                 pass.set_pipeline(&set.sea);
                 self.sea.draw(&mut pass, around);
+                if !around {
+                    pass.set_pipeline(&set.sea_side);
+                    pass.set_vertex_buffer(0, land.walls.slice(..));
+                    pass.draw(0..land.wall_corners, 0..1);
+                }
+            }
+            if let Some(wet) = &wet_buffer {
+                pass.set_pipeline(&set.lake);
+                pass.set_vertex_buffer(0, wet.slice(..));
+                pass.draw_indexed(0..self.index_count, 0, 0..wet_count);
             }
             if let Some((buffer, count)) = &smoke {
                 self.smoke.draw(&mut pass, (buffer, *count), many);
@@ -339,17 +355,17 @@ impl Set {
         let samples = SAMPLES[quality];
         let constants = &[("QUALITY", quality as f64)];
         let attribute = |location, offset, format| wgpu::VertexAttribute { format, offset, shader_location: location };
-        let patches = [attribute(0, 0, VertexFormat::Float32x4), attribute(1, 16, VertexFormat::Float32x4)];
-        let patches = wgpu::VertexBufferLayout {
+        let on_patches = [attribute(0, 0, VertexFormat::Float32x4), attribute(1, 16, VertexFormat::Float32x4)];
+        let patches = || wgpu::VertexBufferLayout {
             array_stride: size_of::<Patch>() as u64,
             step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &patches,
+            attributes: &on_patches,
         };
-        let walls = [attribute(0, 0, VertexFormat::Float32x4)];
-        let walls = wgpu::VertexBufferLayout {
+        let on_walls = [attribute(0, 0, VertexFormat::Float32x4)];
+        let walls = || wgpu::VertexBufferLayout {
             array_stride: 16,
             step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &walls,
+            attributes: &on_walls,
         };
         let corners = [attribute(0, 0, VertexFormat::Float32x2), attribute(1, 8, VertexFormat::Float32)];
         let corners = wgpu::VertexBufferLayout {
@@ -357,12 +373,24 @@ impl Set {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &corners,
         };
-        let over = Some(wgpu::BlendState::ALPHA_BLENDING);
+        let water = |shaders, vertices: wgpu::VertexBufferLayout, strip| {
+            gpu.pipeline(&Pass {
+                shaders,
+                groups: &[frame, ground],
+                vertices: &[Some(vertices)],
+                strip,
+                blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+                depth: Some(true),
+                samples,
+                constants,
+                ..Pass::default()
+            })
+        };
         Self {
             ground: gpu.pipeline(&Pass {
                 shaders: ["ground_vertex", "ground"],
                 groups: &[frame, ground, covers],
-                vertices: &[Some(patches)],
+                vertices: &[Some(patches())],
                 depth: Some(true),
                 samples,
                 constants,
@@ -371,10 +399,11 @@ impl Set {
             side: gpu.pipeline(&Pass {
                 shaders: ["side_vertex", "side"],
                 groups: &[frame, ground],
-                vertices: &[Some(walls)],
+                vertices: &[Some(walls())],
                 strip: true,
                 depth: Some(true),
                 samples,
+                constants,
                 ..Pass::default()
             }),
             backdrop: gpu.pipeline(&Pass {
@@ -382,17 +411,12 @@ impl Set {
                 groups: &[frame],
                 depth: Some(false),
                 samples,
+                constants,
                 ..Pass::default()
             }),
-            sea: gpu.pipeline(&Pass {
-                shaders: ["sea_vertex", "sea"],
-                groups: &[frame, ground],
-                vertices: &[Some(corners)],
-                blend: over,
-                depth: Some(true),
-                samples,
-                ..Pass::default()
-            }),
+            sea: water(["sea_vertex", "sea"], corners, false),
+            sea_side: water(["sea_side_vertex", "sea_side"], walls(), true),
+            lake: water(["lake_vertex", "lake"], patches(), false),
         }
     }
 }

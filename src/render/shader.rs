@@ -12,12 +12,15 @@ macro_rules! sources {
 }
 
 /// Files of the library.
-const LIBRARY: &[(&str, &str)] = sources!("lib/": "frame", "noise", "sky", "ground", "light", "splat", "haze", "lens", "bright", "fire", "noise3");
+const LIBRARY: &[(&str, &str)] = sources!("lib/":
+    "frame", "noise", "sky", "ground", "light", "splat", "haze", "lens", "bright", "waves", "mirror", "water", "river", "fire",
+    "noise3",
+);
 
 /// Entry points.
 pub(super) const ENTRIES: &[(&str, &str)] = sources!("":
     "cover", "hillshade", "ground_vertex", "ground", "side_vertex", "side", "backdrop",
-    "sea_vertex", "sea", "shrink", "spread", "tone",
+    "sea_vertex", "sea", "sea_side_vertex", "sea_side", "lake_vertex", "lake", "shrink", "spread", "tone",
     "lump_vertex", "lump", "lump_smooth", "lava", "ball", "smoke_vertex", "smoke",
     "distance", "distance_many", "shafts", "soften",
 );
@@ -26,9 +29,13 @@ pub(super) const ENTRIES: &[(&str, &str)] = sources!("":
 pub(super) fn source(name: &str) -> String {
     let (_, text) = ENTRIES.iter().find(|(known, _)| *known == name).expect("every pass names one of its shaders");
     if let Ok(dir) = std::env::var("LIVE_SHADERS") { return live(&dir, name); } // DEV-ONLY
+    expanded(text)
+}
+
+/// A text with its imports.
+pub(super) fn expanded(text: &'static str) -> String {
     let mut out = String::new();
-    let mut taken = Vec::new();
-    expand(text, &mut taken, &mut out);
+    expand(text, &mut Vec::new(), &mut out);
     out
 }
 
@@ -60,9 +67,14 @@ fn expand(text: &'static str, taken: &mut Vec<&'static str>, out: &mut String) {
 impl Gpu {
     /// A compiled shader.
     pub(super) fn shader(&self, name: &str) -> ShaderModule {
+        self.compile(name, source(name))
+    }
+
+    /// A compiled shader of this text.
+    pub(super) fn compile(&self, name: &str, text: String) -> ShaderModule {
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
-            source: wgpu::ShaderSource::Wgsl(source(name).into()),
+            source: wgpu::ShaderSource::Wgsl(text.into()),
         })
     }
 }
@@ -120,7 +132,7 @@ mod tests {
         }
         same!(
             view_projection, from_picture, eye, toward, light, sun, moon, ambient, map, haze, air, picture, cover, cover2,
-            bands, water, dark, shallow, bloom, rays, lava, heat
+            bands, water, dark, shallow, bloom, rays, inland, lava, heat
         );
     }
 }

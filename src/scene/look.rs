@@ -104,9 +104,12 @@ pub struct WaterParams {
     /// Length of the longest waves; by the map's extent if not given.
     #[schemars(range(min = 0.1, max = 100000.0), extend("x-unit" = "m", "x-effect" = "longer waves"))]
     pub wave_m: Option<f64>,
-    /// Octaves of noise in the waves.
+    /// Octaves of noise in the waves and of the cellular look.
     #[schemars(range(min = 1, max = 8), extend("x-unit" = "1", "x-effect" = "finer ripples"))]
     pub octaves: u32,
+    /// Width of the rim look's rim and size of the cellular look's cells, 1 as the map's extent suggests.
+    #[schemars(range(min = 0.01, max = 100.0), extend("x-unit" = "1", "x-effect" = "a wider rim, larger cells"))]
+    pub scale: f64,
     /// Foam along coasts.
     #[schemars(range(min = 0.0, max = 4.0), extend("x-unit" = "1", "x-effect" = "whiter coasts"))]
     pub foam: f64,
@@ -126,6 +129,7 @@ impl Default for WaterParams {
             waves: 1.0,
             wave_m: None,
             octaves: 4,
+            scale: 1.0,
             foam: 1.0,
             reflections: true,
         }
