@@ -51,9 +51,11 @@ fn glitter(view: vec3<f32>, slope: vec2<f32>, rest: f32, pixel: f32) -> vec3<f32
     let facing = max(dot(half_way, view), 0.0);
     let mirrored = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
     let z2 = half_way.z * half_way.z;
-    let bright = mirrored * chance / (4.0 * max(view.z, 0.08) * max(z2 * z2, 0.02));
+    // Much of a wide view's sea lies in slicks that send nothing back.
+    let wide = smooth_between(20.0, 500.0, pixel);
+    let bright = mix(1.0, 0.35, wide) * mirrored * chance / (4.0 * max(view.z, 0.08) * max(z2 * z2, 0.02));
     // Flanks hide each other the more the rougher they are and the lower the view: glitter has its most.
-    let most = mix(mix(0.22, 0.06, smooth_between(20.0, 500.0, pixel)), 1.2, exp(-150.0 * rest));
+    let most = mix(mix(0.22, 0.11, wide), 1.2, exp(-150.0 * rest));
     return frame.light.rgb * (bright / (1.0 + bright / most));
 }
 
@@ -81,7 +83,7 @@ fn body(water: Water, facing: f32) -> vec3<f32> {
     let through = exp(-ABSORPTION * (0.5 * way * optical));
     // Sand lies in banks, with weed between them.
     let patches = fbm(water.at.xy / (6.0 * frame.water.z), 3).x;
-    let bed = mix(MUD, BED, water.sea) * (1.0 + 0.5 * patches) * mix(vec3<f32>(1.0), light * 2.0, 0.35 * (1.0 - exp(-2.5 * optical)));
+    let bed = mix(MUD, BED, water.sea) * (1.0 + mix(0.15, 0.5, water.sea) * patches) * mix(vec3<f32>(1.0), light * 2.0, 0.35 * (1.0 - exp(-2.5 * optical)));
     let shelf = mix(dark * 0.85, mix(dark, light, 0.22), exp(-0.28 * optical));
     let scattered = mix(shelf, light, mix(0.12, 0.45, water.sea) * exp(-0.9 * optical)) * mix(FRESH, vec3<f32>(1.0), water.sea) * (1.0 + 0.08 * patches);
     return mix(scattered, bed, through);
