@@ -68,7 +68,7 @@ fn sparkle(at: vec2<f32>, pixel: f32) -> f32 {
     let b = value_noise(at / (2.0 * size) - 0.7 * time).x;
     let n = mix(a, b, level - floor(level));
     // From so far away that a pixel is wider than a wave there are only means.
-    return mix(0.45 + 1.65 * n * n * (1.0 + n), 1.0, smooth_between(1.5, 16.0, pixel));
+    return mix(0.7 + 1.8 * n * n * (1.0 + n), 1.0, smooth_between(1.5, 16.0, pixel));
 }
 
 // Colour of the water itself over its bed, as a reflectance.

@@ -108,7 +108,7 @@ fn whitecaps(at: vec2<f32>, pixel: f32, height: f32, longest: f32, crest: f32) -
     let lace = fbm(at / (0.035 * longest), 4).x;
     let over = 1.3 * crest + 0.9 * rough - (1.35 - 0.35 * strength);
     let bend = value_noise(at / (0.9 * longest)).x;
-    let caps = smooth_between(0.0, 0.22, over) * (0.55 + 0.9 * lace) + smooth_between(0.25, 0.6, over) * 0.5;
+    let caps = smooth_between(0.0, 0.3, over) * clamp(0.42 + 1.5 * lace + 0.3 * over, 0.0, 1.0);
     // Foam that stays behind the crests.
     let left = smooth_between(-0.35, 0.25, over) * smooth_between(0.02, 0.28, lace) * 0.35;
     let streaks = streaked(along / (1.6 * longest), (across + 0.3 * longest * bend) / (0.07 * longest) + 1.6 * rough);
