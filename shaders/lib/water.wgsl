@@ -85,7 +85,7 @@ fn body(water: Water, facing: f32) -> vec3<f32> {
     let patches = fbm(water.at.xy / (6.0 * frame.water.z), 3).x;
     let bed = mix(MUD, BED, water.sea) * (1.0 + mix(0.15, 0.5, water.sea) * patches) * mix(vec3<f32>(1.0), light * 2.0, 0.35 * (1.0 - exp(-2.5 * optical)));
     let shelf = mix(dark * 0.85, mix(dark, light, 0.22), exp(-0.28 * optical));
-    let scattered = mix(shelf, light, mix(0.12, 0.45, water.sea) * exp(-0.9 * optical)) * mix(FRESH, vec3<f32>(1.0), water.sea) * (1.0 + 0.08 * patches);
+    let scattered = mix(shelf, light, mix(0.12, 0.45, water.sea) * exp(-0.9 * optical)) * mix(FRESH, vec3<f32>(1.0), water.sea) * (1.0 + 0.05 * patches);
     return mix(scattered, bed, through);
 }
 

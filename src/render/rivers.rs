@@ -150,7 +150,10 @@ mod tests {
         let half = |x: usize, y: usize| f64::from(rivers.texels[y * 256 + x][1]) / 255.0 * lie.river_reach_m();
         // Its ends and its middle, texels.
         let [head, middle, mouth] = [half(41, 81), half(120, 128), half(199, 175)];
-        assert!((head - 10.0).abs() < 0.6 && (middle - 30.0).abs() < 0.6 && (mouth - 50.0).abs() < 0.6, "{head} {middle} {mouth}");
+        assert!(
+            (head - 10.0).abs() < 0.6 && (middle - 30.0).abs() < 0.6 && (mouth - 50.0).abs() < 0.6,
+            "{head} {middle} {mouth}"
+        );
     }
 
     #[test]

@@ -62,7 +62,13 @@ fn calm_water_mirrors_the_sky_the_more_the_lower_it_is_seen() {
     let Some(gpu) = adapter() else { return };
     let (mut renderer, world, scene) = (Renderer::new(gpu).unwrap(), world(|_, _| -500.0), plain());
     // The eye looks along the water: the horizon is the picture's middle, 0.22 degrees a pixel.
-    let level = Camera { target: DVec3::new(0.0, 0.0, 60.0), from_deg: 300.0, down_deg: 0.0, distance_m: 900.0, view_deg: 20.0 };
+    let level = Camera {
+        target: DVec3::new(0.0, 0.0, 60.0),
+        from_deg: 300.0,
+        down_deg: 0.0,
+        distance_m: 900.0,
+        view_deg: 20.0,
+    };
     let image = picture(&mut renderer, &world, &scene, &level);
     let (above, below) = (mean(&image, 60..100, 38..42), mean(&image, 60..100, 48..52));
     // From 0.7 to 1.6 degrees over and under the horizon; there Fresnel's share is 0.87 to 0.94.
