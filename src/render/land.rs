@@ -61,8 +61,11 @@ impl Land {
         let shade_size = [shade_on.grid.width, shade_on.grid.height];
         let shade = gpu.raster("shade", TextureFormat::Rg16Float, &[(shade_size, vec![[f16::ZERO; 2]; shade_on.data.len()])]);
         let glow = gpu.raster("glow", TextureFormat::Rgba16Float, &[([1, 1], vec![[f16::ZERO; 4]])]);
-        let inland = scene.water.inland.then(|| Inland::of(world, &rasters.height)).flatten();
-        let levels = inland.as_ref().map_or_else(|| vec![([1, 1], vec![[0.0; 2]])], |inland| copies(size, inland.cells.clone()));
+        let mut inland = scene.water.inland.then(|| Inland::of(world, &rasters.height)).flatten();
+        let levels = match &mut inland {
+            Some(inland) => copies(size, std::mem::take(&mut inland.cells)),
+            None => vec![([1, 1], vec![[0.0; 2]])],
+        };
         let water = gpu.raster("water", TextureFormat::Rg32Float, &levels);
         let most = gpu.device.limits().max_texture_dimension_2d as usize;
         let rivers = scene.water.inland.then(|| Rivers::of(world, &rasters.lie, most)).flatten();

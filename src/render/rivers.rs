@@ -9,6 +9,8 @@ use crate::world::{Table, World};
 /// Texels of a cell's side, and most of the raster's.
 const FINER: usize = 4;
 const MOST: usize = 4096;
+/// Rows of texels that are filled as one.
+const BAND: usize = 64;
 
 /// Where rivers run.
 pub struct Rivers {
@@ -55,9 +57,6 @@ impl Rivers {
         Some(Self { size, texels })
     }
 }
-
-/// Rows of texels that are filled as one.
-const BAND: usize = 64;
 
 fn stretches(table: &Table, texel_m: f64, reach_m: f64) -> Option<Vec<Stretch>> {
     let column = |name: &str| table.numbers(name);

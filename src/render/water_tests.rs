@@ -136,3 +136,33 @@ fn a_river_shows_where_its_table_has_it() {
     assert!(moved(44) > 15.0 && moved(45) > 15.0, "{} {}", moved(44), moved(45));
     assert!(moved(39) == 0.0 && moved(51) == 0.0, "{} {}", moved(39), moved(51));
 }
+
+#[test]
+fn still_water_mirrors_the_land_where_it_is_told_to() {
+    let Some(gpu) = adapter() else { return };
+    let mut renderer = Renderer::new(gpu).unwrap();
+    // A ridge 400 m high along the north of the map; the eye looks at it over the water.
+    let world = world(|_, y| if (8..16).contains(&y) { 400.0 } else { -300.0 });
+    let camera = Camera {
+        target: DVec3::new(0.0, 500.0, 20.0),
+        from_deg: 180.0,
+        down_deg: 2.0,
+        distance_m: 1500.0,
+        view_deg: 30.0,
+    };
+    let mut land = renderer.land(&world, &plain()).unwrap();
+    let mut take = |reflections| {
+        let mut scene = plain();
+        scene.water.reflections = reflections;
+        let moment = Moment { size: SIZE, share: 0.0, seconds: 0.0, quality: Quality::Full };
+        renderer.picture(&mut land, &scene, &camera, &moment).unwrap()
+    };
+    let (with, without) = (take(true), take(false));
+    // The horizon is 6 pixels over the middle; the ridge stands over it, its image lies under it.
+    let (ridge, image, sky) =
+        (mean(&with, 60..100, 30..34), mean(&with, 60..100, 48..54), mean(&without, 60..100, 48..54));
+    assert!(apart(image, sky) > 15.0, "image {image:?}, sky {sky:?}");
+    assert!(apart(image, ridge) < apart(sky, ridge), "image {image:?}, sky {sky:?}, ridge {ridge:?}");
+    // What is no water is the same in both.
+    assert_eq!(ridge, mean(&without, 60..100, 30..34));
+}
