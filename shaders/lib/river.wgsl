@@ -14,9 +14,12 @@ fn river_share(uv: vec2<f32>, pixel: f32) -> f32 {
     let half = told.y * reach;
     // Great rivers are never thinner than a pixel and a half; brooks may vanish.
     let great = smooth_between(0.02, 0.16, half / (0.25 * reach));
-    let shown = max(half, min(0.95 * pixel, 0.6 * reach) * great);
+    let wanted = max(half, min(0.95 * pixel, 0.6 * reach) * great);
+    // Between the raster's texels a thinner line would break up: it is drawn as wide as a texel, but fainter.
+    let shown = max(wanted, 0.62 * texel);
+    let faint = mix(0.3, 1.0, clamp(2.2 * wanted / shown, 0.0, 1.0));
     let p = max(pixel, 1e-3);
-    return clamp((shown - away) / p + 0.5, 0.0, 1.0) - clamp((-shown - away) / p + 0.5, 0.0, 1.0);
+    return faint * (clamp((shown - away) / p + 0.5, 0.0, 1.0) - clamp((-shown - away) / p + 0.5, 0.0, 1.0));
 }
 
 // The ground with its rivers.
@@ -40,7 +43,8 @@ fn with_river(colour: vec3<f32>, at: vec3<f32>, uv: vec2<f32>, slope: vec2<f32>,
     var ray = reflect(-view, normal);
     ray = normalize(vec3<f32>(ray.xy, max(ray.z, 0.0) + 0.12));
     let down = frame.light.rgb * (max(frame.toward.z, 0.0) * sun) + frame.ambient.rgb;
-    let own = mix(frame.dark.rgb * DEEP, frame.shallow.rgb, 0.22) * vec3<f32>(1.1, 1.0, 0.8);
+    let clear = mix(frame.dark.rgb * DEEP, frame.shallow.rgb, 0.16) * FRESH;
+    let own = mix(clear, MUD, 0.25);
     var shown = own * down * ((1.0 - mirror) / PI) + sky_light(ray) * mirror;
     shown += glitter(view, ripple, rest, pixel) * sun;
     return mix(colour, shown, share);

@@ -31,7 +31,7 @@ struct Water {
     clarity: f32,
     // Share of the sun that reaches it.
     sun: f32,
-    // 1 for the sea: surf along its coasts, sand on its bed; 0 for fresh water.
+    // 1 for the sea, with surf along its coasts and sand on its bed; 0 for fresh water.
     sea: f32,
     // 1 on the map, 0 beyond it.
     inside: f32,
@@ -51,22 +51,24 @@ fn glitter(view: vec3<f32>, slope: vec2<f32>, rest: f32, pixel: f32) -> vec3<f32
     let facing = max(dot(half_way, view), 0.0);
     let mirrored = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
     let z2 = half_way.z * half_way.z;
-    let bright = mirrored * chance / (4.0 * max(view.z, 0.08) * max(z2 * z2, 0.02));
+    // Much of a wide view's sea lies in slicks that send nothing back.
+    let wide = smooth_between(20.0, 500.0, pixel);
+    let bright = mix(1.0, 0.35, wide) * mirrored * chance / (4.0 * max(view.z, 0.08) * max(z2 * z2, 0.02));
     // Flanks hide each other the more the rougher they are and the lower the view: glitter has its most.
-    let most = mix(mix(0.22, 0.06, smooth_between(20.0, 500.0, pixel)), 1.2, exp(-150.0 * rest));
+    let most = mix(mix(0.22, 0.11, wide), 1.2, exp(-150.0 * rest));
     return frame.light.rgb * (bright / (1.0 + bright / most));
 }
 
 // Glitter is made of sparks: a share that varies from pixel to pixel, one on the mean.
-fn sparkle(at: vec2<f32>, pixel: f32) -> f32 {
+fn sparkle(at: vec2<f32>, pixel: f32, up: f32) -> f32 {
     let level = log2(2.5 * pixel);
     let size = exp2(floor(level));
     let time = frame.picture.w;
     let a = value_noise(at / size + 0.9 * time).x;
     let b = value_noise(at / (2.0 * size) - 0.7 * time).x;
     let n = mix(a, b, level - floor(level));
-    // From so far away that a pixel is wider than a wave there are only means.
-    return mix(0.45 + 1.65 * n * n * (1.0 + n), 1.0, smooth_between(1.5, 16.0, pixel));
+    // From so high that a pixel is wider than a wave there are only means; from the side rows of waves are still seen.
+    return mix(0.7 + 1.8 * n * n * (1.0 + n), 1.0, smooth_between(1.5, 16.0, pixel) * smooth_between(0.05, 0.3, up));
 }
 
 // Colour of the water itself over its bed, as a reflectance.
@@ -80,10 +82,11 @@ fn body(water: Water, facing: f32) -> vec3<f32> {
     let way = 1.0 / sqrt(1.0 - 0.56 * (1.0 - facing * facing)) + 1.15;
     let through = exp(-ABSORPTION * (0.5 * way * optical));
     // Sand lies in banks, with weed between them.
-    let patches = fbm(water.at.xy / (6.0 * frame.water.z), 3).x;
-    let bed = mix(MUD, BED, water.sea) * (1.0 + 0.5 * patches) * mix(vec3<f32>(1.0), light * 2.0, 0.35 * (1.0 - exp(-2.5 * optical)));
+    var patches = 0.0;
+    if (frame.cover2.w > 0.5) { patches = fbm(water.at.xy / (6.0 * frame.water.z), 3).x; }
+    let bed = mix(MUD, BED, water.sea) * (1.0 + mix(0.15, 0.5, water.sea) * patches) * mix(vec3<f32>(1.0), light * 2.0, 0.35 * (1.0 - exp(-2.5 * optical)));
     let shelf = mix(dark * 0.85, mix(dark, light, 0.22), exp(-0.28 * optical));
-    let scattered = mix(shelf, light, mix(0.12, 0.45, water.sea) * exp(-0.9 * optical)) * mix(FRESH, vec3<f32>(1.0), water.sea) * (1.0 + 0.08 * patches);
+    let scattered = mix(shelf, light, mix(0.12, 0.45, water.sea) * exp(-0.9 * optical)) * mix(FRESH, vec3<f32>(1.0), water.sea) * (1.0 + 0.05 * patches);
     return mix(scattered, bed, through);
 }
 
@@ -124,7 +127,7 @@ fn cells(at: vec2<f32>, depth: f32, clarity: f32) -> vec3<f32> {
 
 // Surf along the coast: broken lines at their distances from the shore, and what they leave between.
 fn surf(water: Water, pixel: f32) -> f32 {
-    if (water.sea <= 0.0 || frame.water.w <= 0.0) { return 0.0; }
+    if (water.sea <= 0.0 || frame.cover2.w < 0.5 || frame.water.w <= 0.0) { return 0.0; }
     let width = max(0.35 * water.longest, 0.8 * pixel);
     let shore = water.depth / max(water.steep, 0.012);
     let away = shore / width;
@@ -137,7 +140,7 @@ fn surf(water: Water, pixel: f32) -> f32 {
     return clamp((0.75 * lines * near + 0.7 * wash) * frame.water.w, 0.0, 0.92) * water.sea;
 }
 
-// All of it, in haze; and how much of the ground it hides.
+// All of it, in haze.
 fn watered(water: Water, pixel: f32, view: vec3<f32>) -> vec3<f32> {
     let wave = waves(water.at.xy, pixel, water.height, water.longest);
     let normal = normalize(vec3<f32>(-wave.slope, 1.0));
@@ -153,8 +156,9 @@ fn watered(water: Water, pixel: f32, view: vec3<f32>) -> vec3<f32> {
     let swell = clamp(1.0 + 0.28 * wave.crest * min(water.height, 2.5), 0.4, 1.9);
     var colour = body(water, facing) * down * (swell * (1.0 - share) / PI);
     // Gusts roughen some of the sea more than the rest.
-    let slick = 1.0 + 0.45 * fbm(water.at.xy / (22.0 * water.longest), 3).x;
-    colour += reflected * share + glitter(view, wave.slope, wave.rest * slick, pixel) * (water.sun * sparkle(water.at.xy, pixel));
+    var slick = 1.0;
+    if (frame.cover2.w > 0.5) { slick += 0.45 * fbm(water.at.xy / (22.0 * water.longest), 3).x; }
+    colour += reflected * share + glitter(view, wave.slope, wave.rest * slick, pixel) * (water.sun * sparkle(water.at.xy, pixel, view.z));
     let caps = whitecaps(water.at.xy, pixel, water.height, water.longest, wave.crest);
     let foam = max(surf(water, pixel), caps);
     colour = mix(colour, down * (0.72 / PI), foam);

@@ -40,7 +40,7 @@ fn waves(at: vec2<f32>, pixel: f32, height: f32, longest: f32) -> Waves {
     // Swell: sines of deep water, whose phases and heights wander so that no pattern returns.
     let wander = value_noise(at / (3.1 * longest) + 7.7).x;
     let wander2 = value_noise(at / (5.3 * longest) - 3.1).x;
-    let seen = 1.0 - smooth_between(0.06, 0.3, pixel / longest);
+    let seen = 1.0 - smooth_between(0.03, 0.16, pixel / longest);
     if (seen > 0.0) {
         var length = longest;
         for (var k = 0; k < 4; k++) {
@@ -49,7 +49,7 @@ fn waves(at: vec2<f32>, pixel: f32, height: f32, longest: f32) -> Waves {
             let phase = number * dot(way, at) - sqrt(9.81 * number) * time + 2.3 * f32(k)
                 + 3.4 * (wander * cos(1.9 * f32(k)) + wander2 * sin(1.3 * f32(k) + 0.5));
             let steep = 0.032 * height * (0.62 + 0.38 * sin(1.7 * f32(k) + 4.0 * wander2 - 2.5 * wander));
-            let shown = 1.0 - smooth_between(0.06, 0.3, pixel / length);
+            let shown = 1.0 - smooth_between(0.03, 0.16, pixel / length);
             // Crests are sharper than troughs.
             let sharp = 1.0 + 0.45 * min(height, 2.0) * sin(phase) * 0.5;
             out.slope += way * (steep * sharp * cos(phase) * shown);
@@ -66,7 +66,7 @@ fn waves(at: vec2<f32>, pixel: f32, height: f32, longest: f32) -> Waves {
     let whole = floor(level);
     let share = level - whole;
     var length = pow(SHORTER, whole);
-    let count = i32(frame.shallow.w) + 2;
+    let count = select(i32(frame.shallow.w) + 2, 2, frame.cover2.w < 0.5);
     for (var k = 0; k < count; k++) {
         var shown = (1.0 - smooth_between(0.12, 0.4, pixel / length)) * (1.0 - smooth_between(0.25, 0.7, length / longest))
             * smooth_between(0.5 * CAPILLARY_M, CAPILLARY_M, length);
@@ -108,7 +108,7 @@ fn whitecaps(at: vec2<f32>, pixel: f32, height: f32, longest: f32, crest: f32) -
     let lace = fbm(at / (0.035 * longest), 4).x;
     let over = 1.3 * crest + 0.9 * rough - (1.35 - 0.35 * strength);
     let bend = value_noise(at / (0.9 * longest)).x;
-    let caps = smooth_between(0.0, 0.22, over) * (0.55 + 0.9 * lace) + smooth_between(0.25, 0.6, over) * 0.5;
+    let caps = smooth_between(0.0, 0.3, over) * clamp(0.42 + 1.5 * lace + 0.3 * over, 0.0, 1.0);
     // Foam that stays behind the crests.
     let left = smooth_between(-0.35, 0.25, over) * smooth_between(0.02, 0.28, lace) * 0.35;
     let streaks = streaked(along / (1.6 * longest), (across + 0.3 * longest * bend) / (0.07 * longest) + 1.6 * rough);

@@ -79,8 +79,11 @@ impl Land {
         let fire = gpu.raster("light of lava", TextureFormat::Rg16Float, &fire::halves(spread_size, spread.clone()));
         let glow = lava.map_or_else(|| vec![([1, 1], vec![[f16::ZERO; 4]])], |lava| fire::halves(size, lava));
         let glow = gpu.raster("lava", TextureFormat::Rgba16Float, &glow);
-        let inland = scene.water.inland.then(|| Inland::of(world, &rasters.height)).flatten();
-        let levels = inland.as_ref().map_or_else(|| vec![([1, 1], vec![[0.0; 2]])], |inland| copies(size, inland.cells.clone()));
+        let mut inland = scene.water.inland.then(|| Inland::of(world, &rasters.height)).flatten();
+        let levels = match &mut inland {
+            Some(inland) => copies(size, std::mem::take(&mut inland.cells)),
+            None => vec![([1, 1], vec![[0.0; 2]])],
+        };
         let water = gpu.raster("water", TextureFormat::Rg32Float, &levels);
         let most = gpu.device.limits().max_texture_dimension_2d as usize;
         let rivers = scene.water.inland.then(|| Rivers::of(world, &rasters.lie, most)).flatten();

@@ -9,6 +9,8 @@ use crate::world::{Table, World};
 /// Texels of a cell's side, and most of the raster's.
 const FINER: usize = 4;
 const MOST: usize = 4096;
+/// Rows of texels that are filled as one.
+const BAND: usize = 64;
 
 /// Where rivers run.
 pub struct Rivers {
@@ -55,9 +57,6 @@ impl Rivers {
         Some(Self { size, texels })
     }
 }
-
-/// Rows of texels that are filled as one.
-const BAND: usize = 64;
 
 fn stretches(table: &Table, texel_m: f64, reach_m: f64) -> Option<Vec<Stretch>> {
     let column = |name: &str| table.numbers(name);
@@ -150,7 +149,10 @@ mod tests {
         let half = |x: usize, y: usize| f64::from(rivers.texels[y * 256 + x][1]) / 255.0 * lie.river_reach_m();
         // Its ends and its middle, texels.
         let [head, middle, mouth] = [half(41, 81), half(120, 128), half(199, 175)];
-        assert!((head - 10.0).abs() < 0.6 && (middle - 30.0).abs() < 0.6 && (mouth - 50.0).abs() < 0.6, "{head} {middle} {mouth}");
+        assert!(
+            (head - 10.0).abs() < 0.6 && (middle - 30.0).abs() < 0.6 && (mouth - 50.0).abs() < 0.6,
+            "{head} {middle} {mouth}"
+        );
     }
 
     #[test]

@@ -17,7 +17,8 @@ const UNDER_M: f32 = 0.5;
 
 /// The surface of a world's inland water.
 pub struct Inland {
-    /// Height of the surface and depth of the water, m, a cell; less than 0 deep where the ground is dry.
+    /// Height of the surface and depth of the water, m, a cell; less than 0 deep where the ground is dry. Taken out for the
+    /// adapter.
     pub cells: Vec<[f32; 2]>,
     /// Which of the finest patches have any.
     wet: Vec<bool>,

@@ -62,7 +62,13 @@ fn calm_water_mirrors_the_sky_the_more_the_lower_it_is_seen() {
     let Some(gpu) = adapter() else { return };
     let (mut renderer, world, scene) = (Renderer::new(gpu).unwrap(), world(|_, _| -500.0), plain());
     // The eye looks along the water: the horizon is the picture's middle, 0.22 degrees a pixel.
-    let level = Camera { target: DVec3::new(0.0, 0.0, 60.0), from_deg: 300.0, down_deg: 0.0, distance_m: 900.0, view_deg: 20.0 };
+    let level = Camera {
+        target: DVec3::new(0.0, 0.0, 60.0),
+        from_deg: 300.0,
+        down_deg: 0.0,
+        distance_m: 900.0,
+        view_deg: 20.0,
+    };
     let image = picture(&mut renderer, &world, &scene, &level);
     let (above, below) = (mean(&image, 60..100, 38..42), mean(&image, 60..100, 48..52));
     // From 0.7 to 1.6 degrees over and under the horizon; there Fresnel's share is 0.87 to 0.94.
@@ -131,4 +137,34 @@ fn a_river_shows_where_its_table_has_it() {
     let moved = |y: u32| apart(mean(&wet, 30..130, y..y + 1), mean(&dry, 30..130, y..y + 1));
     assert!(moved(44) > 15.0 && moved(45) > 15.0, "{} {}", moved(44), moved(45));
     assert!(moved(39) == 0.0 && moved(51) == 0.0, "{} {}", moved(39), moved(51));
+}
+
+#[test]
+fn still_water_mirrors_the_land_where_it_is_told_to() {
+    let Some(gpu) = adapter() else { return };
+    let mut renderer = Renderer::new(gpu).unwrap();
+    // A ridge 400 m high along the north of the map; the eye looks at it over the water.
+    let world = world(|_, y| if (8..16).contains(&y) { 400.0 } else { -300.0 });
+    let camera = Camera {
+        target: DVec3::new(0.0, 500.0, 20.0),
+        from_deg: 180.0,
+        down_deg: 2.0,
+        distance_m: 1500.0,
+        view_deg: 30.0,
+    };
+    let mut land = renderer.land(&world, &plain()).unwrap();
+    let mut take = |reflections| {
+        let mut scene = plain();
+        scene.water.reflections = reflections;
+        let moment = Moment { size: SIZE, share: 0.0, seconds: 0.0, quality: Quality::Full };
+        renderer.picture(&mut land, &scene, &camera, &moment).unwrap()
+    };
+    let (with, without) = (take(true), take(false));
+    // The horizon is 6 pixels over the middle; the ridge stands over it, its image lies under it.
+    let (ridge, image, sky) =
+        (mean(&with, 60..100, 30..34), mean(&with, 60..100, 48..54), mean(&without, 60..100, 48..54));
+    assert!(apart(image, sky) > 15.0, "image {image:?}, sky {sky:?}");
+    assert!(apart(image, ridge) < apart(sky, ridge), "image {image:?}, sky {sky:?}, ridge {ridge:?}");
+    // What is no water is the same in both.
+    assert_eq!(ridge, mean(&without, 60..100, 30..34));
 }
