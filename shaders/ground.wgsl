@@ -33,6 +33,8 @@ fn side_weights(normal: vec3<f32>) -> vec3<f32> {
 
 fn covered(at: vec3<f32>, uv: vec2<f32>, normal: vec3<f32>, away: f32) -> Surface {
     let cover = textureSampleLevel(cover_map, smooth_clamp, uv, 0.0);
+    // A map's colours are draped over the land.
+    if (frame.cover2.z == 3.0) { return Surface(cover.rgb, normal); }
     let state = textureSampleLevel(state_map, smooth_clamp, uv, 0.0);
     let pixel = max(away * frame.eye.w, 0.004);
     let over_sea = at.z - frame.map.z;

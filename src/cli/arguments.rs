@@ -145,7 +145,7 @@ pub(crate) struct RawFilm {
 /// `params` as typed.
 #[derive(Debug, Args)]
 pub(crate) struct RawParams {
-    /// A stage's kind, or 'world'
+    /// A stage's kind, 'world' or 'scene'
     pub stage: Option<String>,
     /// Print the JSON schema of a recipe, for editors
     #[arg(long)]

@@ -78,6 +78,7 @@ pub(crate) enum Voice {
 pub(crate) enum Params {
     All,
     World,
+    Scene,
     Stage(&'static str),
     Schema,
     Markdown,
@@ -238,10 +239,13 @@ fn params(raw: RawParams) -> Result<Params, CliError> {
     if name == "world" {
         return Ok(Params::World);
     }
+    if name == "scene" {
+        return Ok(Params::Scene);
+    }
     if let Some(stage) = find_stage(&name) {
         return Ok(Params::Stage(stage.kind));
     }
-    let kinds = || stage_kinds().iter().map(|stage| stage.kind).chain(["world"]);
+    let kinds = || stage_kinds().iter().map(|stage| stage.kind).chain(["world", "scene"]);
     let hint = match nearest(&name, kinds()) {
         Some(near) => format!("did you mean '{near}'?"),
         None => format!("there are: {}", kinds().collect::<Vec<_>>().join(", ")),

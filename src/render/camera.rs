@@ -99,12 +99,13 @@ impl Camera {
 
     /// From the map's metres to the camera's.
     pub fn view(&self) -> DMat4 {
-        DMat4::look_at_rh(self.eye(), self.target, DVec3::Z)
+        glam::dcamera::rh::view::look_at_mat4(self.eye(), self.target, DVec3::Z)
     }
 
     /// From the map's metres to the picture, for its width over its height.
     pub fn view_projection(&self, aspect: f64) -> DMat4 {
-        DMat4::perspective_infinite_reverse_rh(self.view_deg.to_radians(), aspect, self.near_m()) * self.view()
+        let lens = glam::dcamera::rh::proj::directx::perspective_infinite_reverse(self.view_deg.to_radians(), aspect, self.near_m());
+        lens * self.view()
     }
 
     /// Pixels that a metre takes at a distance of a metre, in a picture of this height.

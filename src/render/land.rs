@@ -6,6 +6,7 @@ use half::f16;
 use super::{
     Gpu, RenderError,
     ground::{Lie, Rasters, copies},
+    overview::Overview,
     passes::{Slot, view},
     shade::{coarse, sweep},
     terrain::Quadtree,
@@ -34,6 +35,9 @@ pub struct Land {
     /// Corners of the block's walls, two a cell of the rim.
     pub(super) walls: wgpu::Buffer,
     pub(super) wall_corners: u32,
+    /// What covers the ground, and whether that is a map's colours.
+    pub(super) cover: wgpu::Texture,
+    pub(super) draped: bool,
     height: Field<f32>,
     shade_on: Field<f32>,
     shade: wgpu::Texture,
@@ -67,6 +71,8 @@ impl Land {
             group,
             walls: gpu.buffer("walls", &corners, wgpu::BufferUsages::VERTEX),
             wall_corners: corners.len() as u32,
+            cover,
+            draped: false,
             height: rasters.height,
             shade_on,
             shade,
@@ -84,6 +90,11 @@ impl Land {
         let data: Vec<[f16; 2]> = shade.iter().map(|s| [s[0].clamp(-6e4, 6e4), s[1].min(6e4)].map(f16::from_f32)).collect();
         gpu.write(&self.shade, (0, 0), [self.shade_on.grid.width, self.shade_on.grid.height], &data);
         self.lit_from = Some(toward);
+    }
+
+    /// The ground in pieces about so wide, m, for cameras.
+    pub(super) fn overview(&self, wide_m: f64) -> Overview {
+        Overview::new(&self.height, &self.lie, wide_m)
     }
 
     /// How the map lies in the scene.

@@ -10,13 +10,16 @@
 mod air;
 mod camera;
 mod cover;
+mod drape;
 mod frame;
 mod glow;
 mod gpu;
 mod ground;
 mod hillshade;
 mod land;
+mod overview;
 mod passes;
+mod path;
 mod renderer;
 mod sea;
 mod shade;
@@ -27,9 +30,10 @@ mod textures;
 pub use camera::Camera;
 pub use frame::{Lights, Moment};
 pub use gpu::Gpu;
-pub use ground::Lie;
+pub use ground::{Lie, settled};
 pub use hillshade::{Sun, hillshade};
 pub use land::Land;
+pub use path::Path;
 pub use renderer::Renderer;
 
 /// Why there is no picture.

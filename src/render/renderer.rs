@@ -7,6 +7,7 @@ use wgpu::{AddressMode, BindGroup, BindGroupLayout, BindingResource, RenderPipel
 use super::{
     Gpu, RenderError,
     camera::Camera,
+    drape::DRAPED,
     frame::{Frame, Lights, Moment, Sky},
     glow::{Copies, Glow},
     land::{GROUND, Land},
@@ -46,7 +47,6 @@ pub struct Renderer {
 
 /// The pipelines of the picture itself.
 struct Set {
-    samples: u32,
     ground: RenderPipeline,
     side: RenderPipeline,
     backdrop: RenderPipeline,
@@ -158,7 +158,10 @@ impl Renderer {
         };
         self.gpu.checked(|| {
             land.light_from(&self.gpu, sky.sky.toward);
-            let frame = Frame::new(scene, camera, &sky.lights, &sky.sky, &land.lie, moment);
+            let mut frame = Frame::new(scene, camera, &sky.lights, &sky.sky, &land.lie, moment);
+            if land.draped {
+                frame.cover2[2] = DRAPED;
+            }
             self.encode(land, scene, camera, moment, &frame, (sky, targets));
             Ok(())
         })?;
@@ -318,7 +321,6 @@ impl Set {
         };
         let over = Some(wgpu::BlendState::ALPHA_BLENDING);
         Self {
-            samples,
             ground: opaque(["ground_vertex", "ground"], &[frame, ground, covers], &[Some(patches)], false),
             side: opaque(["side_vertex", "side"], &[frame, ground], &[Some(walls)], true),
             backdrop: gpu.pipeline(&Pass {

@@ -30,7 +30,7 @@ use crate::{
     world::World,
 };
 use resample::Resampler;
-use sheet::Sheet;
+pub(super) use sheet::Sheet;
 use shore::Shore;
 use tints::Tints;
 
