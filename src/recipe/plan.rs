@@ -307,8 +307,9 @@ impl Reader<'_> {
             let wanted = format!("a table, written [{name}]");
             return Err(self.error(&node.place, Problem::WrongType { key: name.to_owned(), within, wanted, found }));
         };
-        let checked =
-            self.checker(format!("[{name}]"), format!("upthrust params {}", name.split('.').next().unwrap_or(name))).table(table, &node.place, schema)?;
+        let checked = self
+            .checker(format!("[{name}]"), format!("upthrust params {}", name.split('.').next().unwrap_or(name)))
+            .table(table, &node.place, schema)?;
         serde_json::from_value(checked).map_err(|e| self.error(&node.place, Problem::Unfit(e.to_string())))
     }
 

@@ -15,6 +15,7 @@ use super::{
 use crate::world::World;
 
 /// A map's flat colours, a pixel a cell.
+#[derive(Clone)]
 pub struct Drape {
     /// North up.
     pub colours: RgbImage,
@@ -101,7 +102,9 @@ impl Margins {
     pub fn lay(&self, inner: &RgbImage, words: Words, picture: &mut [u8]) {
         assert_eq!(picture.len(), self.size[0] * self.size[1] * 3, "a picture has its size");
         self.sheet.lay(picture);
-        for (row, from) in picture.chunks_exact_mut(self.size[0] * 3).zip(inner.as_raw().chunks_exact(self.inner[0] * 3)) {
+        for (row, from) in
+            picture.chunks_exact_mut(self.size[0] * 3).zip(inner.as_raw().chunks_exact(self.inner[0] * 3))
+        {
             row[..from.len()].copy_from_slice(from);
         }
         self.sheet.write(words, picture);

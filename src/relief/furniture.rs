@@ -15,6 +15,7 @@ const INK: Ink = Ink::hex(0x2d3438);
 const FAINT: Ink = Ink::hex(0x6d7478);
 
 /// Marks along a legend's bar: place, 0 to 1, and text.
+#[derive(Clone)]
 pub struct Ticks(Vec<(f32, String)>);
 
 impl Ticks {
@@ -39,6 +40,7 @@ impl Ticks {
     }
 }
 
+#[derive(Clone)]
 enum Body {
     /// The lower half of the bar may have other colours.
     Bar {
@@ -51,6 +53,7 @@ enum Body {
 }
 
 /// What the colours mean.
+#[derive(Clone)]
 pub struct Legend {
     title: String,
     body: Body,

@@ -16,7 +16,8 @@ impl Renderer {
         if from_w == 0 || from_h == 0 {
             return Ok(());
         }
-        let place = |at: u32, most: u32, from: u32| (u64::from(2 * at + 1) * u64::from(from) / u64::from(2 * most)) as u32;
+        let place =
+            |at: u32, most: u32, from: u32| (u64::from(2 * at + 1) * u64::from(from) / u64::from(2 * most)) as u32;
         let pixel = |i: u32| {
             let [r, g, b] = colours.get_pixel(place(i % width, width, from_w), place(i / width, height, from_h)).0;
             [r, g, b, 0]

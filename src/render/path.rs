@@ -265,12 +265,14 @@ mod tests {
     #[test]
     fn the_camera_stays_above_the_ground_and_moves_smoothly() {
         let (height, lie) = spikes();
-        let fly = CameraParams { movement: Movement::Fly, down_deg: Some(2.0), distance: Some(0.05), ..Default::default() };
+        let fly =
+            CameraParams { movement: Movement::Fly, down_deg: Some(2.0), distance: Some(0.05), ..Default::default() };
         for params in [low(), fly, CameraParams { down_deg: Some(-20.0), ..CameraParams::default() }] {
             let path = Path::new(&params, lie.extent_m, SIZE);
             let over = Overview::new(&height, &lie, PIECE * path.nearest_m());
             let steps = 4000;
-            let eyes: Vec<DVec3> = (0..=steps).map(|k| path.over(f64::from(k) / f64::from(steps), &over).eye()).collect();
+            let eyes: Vec<DVec3> =
+                (0..=steps).map(|k| path.over(f64::from(k) / f64::from(steps), &over).eye()).collect();
             for (k, eye) in eyes.iter().enumerate() {
                 let near = CLEARANCE * path.stance(k as f64 / f64::from(steps)).distance_m;
                 let over_m = eye.z - ground(&height, &lie, eye.x, eye.y);
@@ -300,7 +302,10 @@ mod tests {
         assert!((end.target.x - 40_000.0).abs() < 1e-6 && (end.target.y + 25_000.0).abs() < 1e-6);
         let orbit = Path::new(&CameraParams { turn_deg: -90.0, ..Default::default() }, lie.extent_m, SIZE);
         assert_eq!((orbit.over(0.0, &over).from_deg, orbit.over(1.0, &over).from_deg), (200.0, 110.0));
-        assert!(!orbit.rests() && Path::new(&CameraParams { turn_deg: 0.0, ..Default::default() }, lie.extent_m, SIZE).rests());
+        assert!(
+            !orbit.rests()
+                && Path::new(&CameraParams { turn_deg: 0.0, ..Default::default() }, lie.extent_m, SIZE).rests()
+        );
     }
 
     #[test]
