@@ -11,8 +11,10 @@ const GENTLE: f64 = 0.12;
 const CLEARANCE: f64 = 0.02;
 /// Width of what the camera takes for one piece of ground, in distances to its target.
 const PIECE: f64 = 0.05;
-/// Share of the map that a flight crosses.
-const FLIGHT: f64 = 0.7;
+/// Where a flight's eye begins and its target ends, before and behind the middle of the map, in its way across it.
+const FLIGHT: f64 = 0.44;
+/// Pictures of this shape show the usual orbit whole; narrower ones are taken from farther away.
+const USUAL_ASPECT: f64 = 16.0 / 9.0;
 /// Room around the map seen from the top.
 const ROOM: f64 = 1.05;
 
@@ -56,7 +58,7 @@ impl Path {
         let side_m = extent_m[0].max(extent_m[1]);
         let aspect = f64::from(size[0].max(1)) / f64::from(size[1].max(1));
         let (from_deg, down_deg, distance, view_deg) = match camera.movement {
-            Movement::Orbit | Movement::Still => (200.0, 28.0, Some(1.25), 35.0),
+            Movement::Orbit | Movement::Still => (200.0, 28.0, Some(1.25 * (USUAL_ASPECT / aspect).max(1.0)), 35.0),
             Movement::Fly => (200.0, 14.0, Some(0.3), 45.0),
             Movement::Top => (180.0, 90.0, None, 15.0),
         };
@@ -139,7 +141,11 @@ impl Path {
                 let toward = -DVec2::new(libm::sin(from), libm::cos(from));
                 let [w, h] = self.extent_m;
                 let along_m = (w * toward.x.abs()).hypot(h * toward.y.abs());
-                stance.target += toward * (FLIGHT * along_m * (gentle(share) - 0.5));
+                let flat_m = stance.distance_m * libm::cos(stance.down_deg.to_radians());
+                let last_m = FLIGHT * along_m;
+                let first_m = (flat_m - last_m).min(last_m);
+                let at_m = first_m + (last_m - first_m) * gentle(share);
+                stance.target += toward * (at_m - stance.target.dot(toward));
             }
         }
         stance

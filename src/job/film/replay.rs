@@ -7,7 +7,10 @@ use std::{
 
 use super::{Film, FilmPlan, FilmRequest, pace, range};
 use crate::{
-    job::{Event, JobError, open_world, scene::View},
+    job::{
+        Event, JobError, open_world,
+        scene::{self, View},
+    },
     recipe::{Overrides, Plan, Source},
     relief::CLIMATE,
     timeline::{Interest, Moment, TimelineError},
@@ -24,6 +27,10 @@ pub fn replay(
     cancel: &AtomicBool,
     tell: &mut dyn FnMut(Event),
 ) -> Result<PathBuf, JobError> {
+    match View::parse(&request.view)? {
+        View::Map(_) => request.scene.refuse_for_maps()?,
+        View::Scene(_) => scene::check_build()?,
+    }
     if let Some(seconds) = request.seconds {
         return super::turn::film(path, request, seconds, cancel, tell);
     }

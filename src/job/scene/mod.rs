@@ -9,7 +9,7 @@ pub use request::{CameraChoice, SceneRequest, TIMES_H};
 pub(crate) use view::View;
 
 use super::{JobError, Picture};
-use crate::scene::{SceneParams, Surround};
+use crate::scene::{Movement, SceneParams, Surround};
 
 /// Whether this build draws scenes.
 pub(crate) fn check_build() -> Result<(), JobError> {
@@ -43,9 +43,15 @@ pub(super) fn still(
     check_build().and(Err(JobError::Refused("no scenes".to_owned())))
 }
 
+/// How far away the whole block is seen, in longer sides of the map.
+const WHOLE_SIDES: f64 = 2.1;
+
 /// Takes out of a scene what would hide a map's colours: the sea's floor and the beds of lakes have some, too.
 pub(crate) fn dry(scene: &mut SceneParams) {
     (scene.water.sea, scene.water.inland) = (false, false);
     (scene.lava.on, scene.smoke.on, scene.fog.on) = (false, false, false);
     scene.surround = Surround::Block;
+    if scene.camera.movement == Movement::Orbit && scene.camera.keys.is_empty() {
+        scene.camera.distance.get_or_insert(WHOLE_SIDES);
+    }
 }
