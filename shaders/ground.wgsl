@@ -114,12 +114,16 @@ fn main(in: Vertex) -> @location(0) vec4<f32> {
     let normal = normalize(vec3<f32>(-slope, 1.0));
     var surface = plain(in.at, in.uv, normal, state, mip);
     if (QUALITY > 0u) { surface = covered(in.at, in.uv, normal, state, away, mip); }
-    let lava = lava_at(in.at, in.uv, normal, away, state.r);
+    // A map's colours are draped over the land as they are.
+    let draped = frame.cover2.z == 3.0;
+    if (draped) { surface = Surface(textureSampleLevel(cover_map, smooth_clamp, in.uv, mip).rgb, normal); }
+    var lava = lava_at(in.at, in.uv, normal, away, state.r);
+    if (draped) { lava.share = 0.0; lava.light = vec3<f32>(0.0); }
     surface.albedo = mix(surface.albedo, lava.albedo, lava.share);
     surface.normal = normalize(mix(surface.normal, lava.normal, lava.share));
     let sun = sun_share(in.uv, 0.0);
     var colour = lit(surface.albedo, surface.normal, state.a, sun);
     colour += surface.albedo * (1.0 / PI) * fire_light(in.uv, surface.normal) + lava.light;
-    colour = mix(with_river(colour, in.at, in.uv, slope, sun), colour, lava.share);
+    colour = mix(with_river(colour, in.at, in.uv, slope, sun), colour, select(lava.share, 1.0, draped));
     return vec4<f32>(hazed(colour, in.at), 1.0);
 }

@@ -10,6 +10,7 @@
 //! - [`process`]: what a solver looks like.
 //! - [`crust`]: how high a column of rock floats.
 //! - [`terrain`], [`tectonics`], [`climate`], [`erosion`], [`volcano`], [`rivers`], [`edit`]: the stages. They never import each other.
+//! - [`scene`]: how a world is to be seen, in plain numbers.
 //! - [`recipe`], [`timeline`]: a recipe becomes a checked plan, a plan becomes a world.
 //! - [`measure`], [`relief`], [`export`]: numbers, pictures and files of a world.
 //! - `render`: pictures on the graphics adapter (feature `render`).
@@ -40,6 +41,8 @@ pub mod rivers;
 pub mod tectonics;
 pub mod terrain;
 pub mod volcano;
+
+pub mod scene;
 
 pub mod recipe;
 pub mod timeline;

@@ -9,7 +9,7 @@ use std::{
 };
 
 /// The rooms; a room imports only rooms before it.
-const ROOMS: [&str; 27] = [
+const ROOMS: [&str; 28] = [
     "grid",
     "noise",
     "rmp",
@@ -26,6 +26,7 @@ const ROOMS: [&str; 27] = [
     "volcano",
     "rivers",
     "edit",
+    "scene",
     "recipe",
     "timeline",
     "measure",

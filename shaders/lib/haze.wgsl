@@ -10,11 +10,13 @@ fn hazed(colour: vec3<f32>, at: vec3<f32>) -> vec3<f32> {
     let distance = length(away);
     let view = away / max(distance, 1e-6);
     let scale = frame.haze.w;
-    let low = exp(-max(frame.eye.z - frame.map.z, -4.0 * scale) / scale);
-    let rise = view.z * distance / scale;
-    // (1 - exp(-x)) / x without its hole at 0.
-    let layers = select((1.0 - exp(-rise)) / rise, 1.0 - 0.5 * rise, abs(rise) < 1e-3);
-    let depth = frame.haze.xyz * (distance * low * layers);
+    // Heights of both ends in the haze; neither power can grow beyond all numbers, however high the eye is.
+    let ends = max(vec2<f32>(frame.eye.z, at.z) - frame.map.z, vec2<f32>(-4.0 * scale)) / scale;
+    let thin = exp(-ends);
+    let rise = ends.y - ends.x;
+    // (exp(-a) - exp(-b)) / (b - a) without its hole at b = a.
+    let layers = select((thin.x - thin.y) / rise, thin.x * (1.0 - 0.5 * rise), abs(rise) < 1e-3);
+    let depth = frame.haze.xyz * (distance * layers);
     let through = exp(-depth);
     // The haze lies in front of the land: it has the light of the lower sky in that direction.
     let level = normalize(vec3<f32>(view.xy, max(abs(view.z) * 0.25, 0.06)));

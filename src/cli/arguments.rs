@@ -114,9 +114,11 @@ pub(crate) struct RawLook {
     /// Size of the film, pixels [default: 1280x720]
     #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
     pub video_size: Option<String>,
-    /// What the film shows: relief, or a layer [default: relief]
-    #[arg(long, value_name = "relief|LAYER")]
+    /// What the film shows: relief, a layer, scene (in space), or a layer's colours in space, scene:LAYER [default: relief]
+    #[arg(long, value_name = "relief|LAYER|scene")]
     pub view: Option<String>,
+    #[command(flatten)]
+    pub scene: RawScene,
     /// Show the time in the film
     #[arg(long)]
     pub clock: bool,
@@ -128,6 +130,23 @@ pub(crate) struct RawLook {
     pub ffmpeg_args: Option<String>,
 }
 
+/// What is asked of a scene, as typed.
+#[derive(Debug, Default, Args)]
+pub(crate) struct RawScene {
+    /// How a scene's camera moves, or a file of a camera and its keys
+    #[arg(long, value_name = "orbit|fly|top|still|FILE")]
+    pub camera: Option<String>,
+    /// Solar time of a scene, or its first and last in a film
+    #[arg(long, value_name = "H|A..B", allow_hyphen_values = true)]
+    pub time_of_day: Option<String>,
+    /// How carefully a scene is drawn [default: full, films normal]
+    #[arg(long, value_name = "draft|normal|full")]
+    pub quality: Option<String>,
+    /// A file whose [scene] takes the place of the recipe's
+    #[arg(long, value_name = "FILE")]
+    pub scene: Option<PathBuf>,
+}
+
 /// `film` as typed.
 #[derive(Debug, Args)]
 pub(crate) struct RawFilm {
@@ -137,6 +156,12 @@ pub(crate) struct RawFilm {
     pub file: PathBuf,
     #[command(flatten)]
     pub look: RawLook,
+    /// Film the finished world for so long, with a camera that moves, instead of its growth (scenes)
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub seconds: Option<String>,
+    /// Set a parameter of the scene; may be given several times
+    #[arg(long, value_name = "scene.PARAM=VALUE", allow_hyphen_values = true)]
+    pub set: Vec<String>,
     /// Replace the film that is there
     #[arg(long)]
     pub force: bool,
@@ -145,7 +170,7 @@ pub(crate) struct RawFilm {
 /// `params` as typed.
 #[derive(Debug, Args)]
 pub(crate) struct RawParams {
-    /// A stage's kind, or 'world'
+    /// A stage's kind, 'world' or 'scene'
     pub stage: Option<String>,
     /// Print the JSON schema of a recipe, for editors
     #[arg(long)]
@@ -224,9 +249,17 @@ pub(crate) struct RawRender {
     pub world: PathBuf,
     /// The picture (PNG or JPEG)
     pub file: PathBuf,
-    /// What to draw: relief, or a layer
-    #[arg(long, value_name = "relief|LAYER", default_value = "relief")]
+    /// What to draw: relief, a layer, scene (in space), or a layer's colours in space, scene:LAYER
+    #[arg(long, value_name = "relief|LAYER|scene", default_value = "relief")]
     pub view: String,
+    /// Size of a scene's picture, pixels [default: 1280x720]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
+    pub size: Option<String>,
+    #[command(flatten)]
+    pub scene: RawScene,
+    /// Set a parameter of the scene; may be given several times
+    #[arg(long, value_name = "scene.PARAM=VALUE", allow_hyphen_values = true)]
+    pub set: Vec<String>,
     /// Plate borders and motions over it
     #[arg(long)]
     pub overlay: bool,

@@ -16,7 +16,7 @@ use crate::{
 use super::{
     CliError,
     arguments::{RawApp, RawCommand, RawGrow, RawInspect, RawParams},
-    export, film,
+    export, film, scene,
 };
 
 /// The recipe of a bare `grow`.
@@ -30,8 +30,8 @@ pub(crate) enum Command {
     Params(Params),
     Inspect(RawInspect),
     Export(Box<ExportRequest>),
-    Render(Picture),
-    Film { world: PathBuf, film: FilmRequest },
+    Render(Box<Picture>),
+    Film { world: PathBuf, film: Box<FilmRequest> },
     App(RawApp),
 }
 
@@ -78,6 +78,7 @@ pub(crate) enum Voice {
 pub(crate) enum Params {
     All,
     World,
+    Scene,
     Stage(&'static str),
     Schema,
     Markdown,
@@ -97,12 +98,16 @@ impl Command {
             RawCommand::Inspect(raw) => Command::Inspect(raw),
             RawCommand::Export(raw) => Command::Export(Box::new(export::validate(*raw)?)),
             RawCommand::Render(raw) => {
+                let scene = scene::request(&raw.scene, &raw.set, raw.size.as_deref())?;
                 let (world, file) = (raw.world, raw.file);
-                Command::Render(Picture { world, file, view: raw.view, overlay: raw.overlay, smoke: raw.smoke })
+                let picture = Picture { world, file, view: raw.view, overlay: raw.overlay, smoke: raw.smoke, scene };
+                Command::Render(Box::new(picture))
             }
             RawCommand::Film(raw) => {
-                let film = film::request(Some(raw.file), &raw.look, raw.force)?;
-                Command::Film { world: raw.world, film }
+                let mut film = film::request(Some(raw.file), &raw.look, raw.force)?;
+                film.scene.set = raw.set;
+                film.seconds = raw.seconds.as_deref().map(scene::seconds).transpose()?;
+                Command::Film { world: raw.world, film: Box::new(film) }
             }
             RawCommand::App(raw) => Command::App(raw),
         })
@@ -238,10 +243,13 @@ fn params(raw: RawParams) -> Result<Params, CliError> {
     if name == "world" {
         return Ok(Params::World);
     }
+    if name == "scene" {
+        return Ok(Params::Scene);
+    }
     if let Some(stage) = find_stage(&name) {
         return Ok(Params::Stage(stage.kind));
     }
-    let kinds = || stage_kinds().iter().map(|stage| stage.kind).chain(["world"]);
+    let kinds = || stage_kinds().iter().map(|stage| stage.kind).chain(["world", "scene"]);
     let hint = match nearest(&name, kinds()) {
         Some(near) => format!("did you mean '{near}'?"),
         None => format!("there are: {}", kinds().collect::<Vec<_>>().join(", ")),

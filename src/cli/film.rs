@@ -21,6 +21,7 @@ use super::{
     command::{Voice, wrong},
     output::Output,
     progress::Progress,
+    scene,
 };
 
 /// The film, if one is asked for.
@@ -31,6 +32,10 @@ pub(crate) fn film(raw: &RawGrow) -> Result<Option<FilmRequest>, CliError> {
             ("--fps", look.fps.is_some()),
             ("--video-size", look.video_size.is_some()),
             ("--view", look.view.is_some()),
+            ("--camera", look.scene.camera.is_some()),
+            ("--time-of-day", look.scene.time_of_day.is_some()),
+            ("--quality", look.scene.quality.is_some()),
+            ("--scene", look.scene.scene.is_some()),
             ("--clock", look.clock),
             ("--ffmpeg-args", look.ffmpeg_args.is_some()),
         ];
@@ -61,6 +66,8 @@ pub(crate) fn request(file: Option<PathBuf>, look: &RawLook, replace: bool) -> R
         rate: look.fps.as_deref().map(rate).transpose()?,
         size: look.video_size.as_deref().map(size).transpose()?,
         view: look.view.clone().unwrap_or_else(|| "relief".to_owned()),
+        scene: scene::request(&look.scene, &[], None)?,
+        seconds: None,
         clock: look.clock,
         smoke: !look.no_smoke,
         ffmpeg_args,

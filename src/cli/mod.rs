@@ -13,6 +13,7 @@ mod grow;
 mod output;
 mod progress;
 mod reference;
+mod scene;
 mod world;
 
 use std::{

@@ -31,6 +31,7 @@ pub(crate) fn params(what: &Params, output: &mut Output) -> Result<(), CliError>
         Params::Schema => output.line(&serde_json::to_string_pretty(&recipe::json_schema()).unwrap_or_default()),
         Params::Markdown => output.line(recipe::markdown().trim_end()),
         Params::World => table("[world]: the map", &recipe::world_parameters(), output),
+        Params::Scene => table("[scene]: how the world is drawn in space", &recipe::scene_parameters(), output),
         Params::Stage(kind) => match recipe::find_stage(kind) {
             Some(stage) => {
                 let title = format!("{}: {}", stage.kind, stage.about);
@@ -45,6 +46,7 @@ pub(crate) fn params(what: &Params, output: &mut Output) -> Result<(), CliError>
         Params::All => {
             let width = recipe::stage_kinds().iter().map(|stage| stage.kind.len()).max().unwrap_or(0).max(5);
             output.line(&format!("{:width$}  The map: seed, size, extent, sea level.", "world"))?;
+            output.line(&format!("{:width$}  Camera, light, air, water: how the world is drawn in space.", "scene"))?;
             for stage in recipe::stage_kinds() {
                 output.line(&format!("{:width$}  {}", stage.kind, stage.about))?;
             }

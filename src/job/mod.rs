@@ -13,6 +13,7 @@ mod keep;
 mod manifest;
 mod picture;
 mod report;
+mod scene;
 mod series;
 mod sheet;
 
@@ -24,6 +25,7 @@ pub use grow::{Grown, Request, grow};
 pub use manifest::Manifest;
 pub use picture::{Picture, open_world, render};
 pub use report::Measured;
+pub use scene::{CameraChoice, SceneRequest, TIMES_H};
 pub use series::{PROFILES, SERIES};
 pub use sheet::{MOST as SHEET_MOST, SheetRequest, sheet};
 
@@ -96,6 +98,10 @@ pub enum JobError {
     /// The map could not be drawn.
     #[error(transparent)]
     Relief(#[from] ReliefError),
+    /// The scene could not be drawn.
+    #[cfg(feature = "render")]
+    #[error(transparent)]
+    Render(#[from] crate::render::RenderError),
     /// A recording could not be written or read.
     #[error(transparent)]
     Bake(#[from] BakeError),
@@ -134,6 +140,8 @@ impl JobError {
             JobError::Timeline(TimelineError::Checkpoint(error)) => matches!(error, CheckpointError::Foreign { .. }),
             JobError::Export(ExportError::FilmRequest(_)) => true,
             JobError::Store(error) => matches!(error, StoreError::Absent(_)),
+            #[cfg(feature = "render")]
+            JobError::Render(error) => matches!(error, crate::render::RenderError::PictureSize { .. }),
             JobError::Bake(error) => matches!(error, BakeError::Foreign { .. } | BakeError::Outside { .. }),
             _ => false,
         }

@@ -8,16 +8,17 @@ use image::{
 };
 
 use crate::{
-    export,
-    recipe::nearest,
-    relief,
+    export, relief,
     world::{
-        Layer, World,
+        World,
         store::{self, Provenance, said},
     },
 };
 
-use super::{JobError, STORE};
+use super::{
+    JobError, STORE,
+    scene::{self, SceneRequest, View},
+};
 
 /// Fine lines and letters stay clean.
 const JPEG_QUALITY: u8 = 92;
@@ -29,12 +30,14 @@ pub struct Picture {
     pub world: PathBuf,
     /// The picture.
     pub file: PathBuf,
-    /// `relief`, or a layer's name.
+    /// `relief`, a layer's name, `scene`, or `scene:` and one of the former.
     pub view: String,
-    /// Plate borders and motions over it.
+    /// Plate borders and motions over it; over a scene they lie on a map's colours.
     pub overlay: bool,
     /// Smoke over the relief, where a vent erupts.
     pub smoke: bool,
+    /// What flags say of the scene.
+    pub scene: SceneRequest,
 }
 
 /// Reads a world from its folder, or from the store in it.
@@ -49,37 +52,31 @@ pub fn open_world(path: &Path) -> Result<(World, Provenance), JobError> {
 /// Draws a view of a world.
 pub fn render(picture: &Picture) -> Result<PathBuf, JobError> {
     check_picture(&picture.file)?;
-    let view = view(&picture.view)?;
+    let view = View::parse(&picture.view)?;
+    match view {
+        View::Map(_) => picture.scene.refuse_for_maps()?,
+        View::Scene(_) if picture.smoke => {
+            let what = "--smoke is about maps; in a scene smoke is drawn, or not with --set scene.smoke.on=false";
+            return Err(JobError::Refused(what.to_owned()));
+        }
+        View::Scene(_) => scene::check_build()?,
+    }
     let (world, provenance) = open_world(&picture.world)?;
-    if let relief::View::Layer(layer) = view
-        && !world.viewable().contains(&layer)
-    {
-        let there: Vec<_> = world.viewable().iter().map(|layer| layer.name()).collect();
-        let what = format!("this world has no layer '{}' (it has: {})", layer.name(), there.join(", "));
-        return Err(JobError::Refused(format!("--view {}: {what}", picture.view)));
-    }
-    let options = relief::Options {
-        overlay: picture.overlay,
-        smoke: picture.smoke,
-        title: Some(provenance.name),
-        ..Default::default()
+    view.check(&picture.view, &world)?;
+    let drawn = match view {
+        View::Map(view) => {
+            let options = relief::Options {
+                overlay: picture.overlay,
+                smoke: picture.smoke,
+                title: Some(provenance.name),
+                ..Default::default()
+            };
+            relief::map(&world, &view, &options)?
+        }
+        View::Scene(draped) => scene::still(picture, &world, &provenance, draped)?,
     };
-    write_picture(&relief::map(&world, &view, &options)?, &picture.file)?;
+    write_picture(&drawn, &picture.file)?;
     Ok(picture.file.clone())
-}
-
-pub(crate) fn view(name: &str) -> Result<relief::View, JobError> {
-    if name == "relief" {
-        return Ok(relief::View::Relief);
-    }
-    let names = || Layer::ALL.iter().map(|layer| layer.name()).chain(["relief"]);
-    Layer::from_name(name).map(relief::View::Layer).ok_or_else(|| {
-        let hint = match nearest(name, names()) {
-            Some(near) => format!("did you mean '{near}'?"),
-            None => format!("there are: {}", names().collect::<Vec<_>>().join(", ")),
-        };
-        JobError::Refused(format!("--view {name}: neither 'relief' nor a layer ({hint})"))
-    })
 }
 
 /// Writes a picture, whole or not at all.

@@ -11,6 +11,7 @@ use super::{
     schema::{self, choices, plain_number},
     stages,
 };
+use crate::scene::SceneParams;
 
 /// One parameter, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,6 +36,12 @@ pub struct Parameter {
 pub fn world_parameters() -> Vec<Parameter> {
     let defaults = serde_json::to_value(WorldParams::default()).unwrap_or_default();
     rows(&schema::of::<WorldParams>(), &defaults, "")
+}
+
+/// The parameters of `[scene]`.
+pub fn scene_parameters() -> Vec<Parameter> {
+    let defaults = serde_json::to_value(SceneParams::default()).unwrap_or_default();
+    rows(&schema::of::<SceneParams>(), &defaults, "")
 }
 
 /// A stage's own parameters.
@@ -133,6 +140,8 @@ pub fn markdown() -> String {
     );
     out.push_str("\n## [world]\n\nThe map.\n\n");
     markdown_table(&mut out, &world_parameters());
+    out.push_str("\n## [scene]\n\nHow the world is drawn in space: see [Scenes](scene.md).\n\n");
+    markdown_table(&mut out, &scene_parameters());
     out.push_str("\n## Every stage\n\nKeys that each `[[stage]]` knows besides its own.\n\n");
     markdown_table(&mut out, &rows(&schema::of::<super::plan::CommonKeys>(), &Json::Null, ""));
     for kind in stages::all() {
@@ -168,7 +177,7 @@ pub fn json_schema() -> Json {
             "name": { "type": "string", "description": "Name for people." },
             "description": { "type": "string", "description": "One line about it." },
             "world": schema::of::<WorldParams>(),
-            "scene": { "type": "object", "description": "Camera, light, water." },
+            "scene": schema::of::<SceneParams>(),
             "stage": { "type": "array", "minItems": 1, "items": { "oneOf": stages } },
         },
     })

@@ -9,6 +9,7 @@ use serde_json::Value as Json;
 use crate::{
     grid::Grid,
     process::{Blend, Placement, ProcessError},
+    scene::SceneParams,
     world::{Layer, Mask, open_picture},
 };
 
@@ -17,6 +18,7 @@ use super::{
     error::{Problem, RecipeError},
     imports::Imports,
     near::nearest,
+    scene,
     schema::{self, Checker},
     stages,
     tree::{self, Node, Place, Table, Value, quoted},
@@ -38,8 +40,8 @@ pub struct Plan {
     pub world: WorldParams,
     /// The stages, in order.
     pub stages: Vec<Stage>,
-    /// Camera, light, water: kept for those who draw.
-    pub scene: Json,
+    /// How the world is to be seen: camera, light, water.
+    pub scene: SceneParams,
     /// The recipe as it runs, flags included.
     pub text: String,
     /// What a person should know before it runs, a line each.
@@ -169,10 +171,7 @@ impl Plan {
             Some(Value::Text(text)) => Some(text.clone()),
             _ => None,
         };
-        let scene = match root.get("scene") {
-            Some(node) => reader.section(node, "scene", &serde_json::json!({ "type": "object" }))?,
-            None => Json::Object(Default::default()),
-        };
+        let scene = scene::of(&reader, &root)?;
         Ok(Self {
             name: slug(&source.name),
             asked: source.file.clone(),
@@ -256,13 +255,16 @@ fn slug(name: &str) -> String {
     if kept.is_empty() { "world".to_owned() } else { kept.to_owned() }
 }
 
-struct Reader<'a> {
-    file: &'a str,
-    folder: &'a Path,
+/// Holds a recipe's tree against schemas.
+pub(super) struct Reader<'a> {
+    /// The recipe's name in messages.
+    pub file: &'a str,
+    /// The folder that its paths are relative to.
+    pub folder: &'a Path,
 }
 
 impl Reader<'_> {
-    fn error(&self, place: &Place, problem: Problem) -> RecipeError {
+    pub fn error(&self, place: &Place, problem: Problem) -> RecipeError {
         RecipeError::new(self.file, place, problem)
     }
 
@@ -293,7 +295,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn section<T: serde::de::DeserializeOwned>(
+    /// A table of the recipe, checked.
+    pub fn section<T: serde::de::DeserializeOwned>(
         &self,
         node: &Node,
         name: &str,
@@ -304,8 +307,9 @@ impl Reader<'_> {
             let wanted = format!("a table, written [{name}]");
             return Err(self.error(&node.place, Problem::WrongType { key: name.to_owned(), within, wanted, found }));
         };
-        let checked =
-            self.checker(format!("[{name}]"), format!("upthrust params {name}")).table(table, &node.place, schema)?;
+        let checked = self
+            .checker(format!("[{name}]"), format!("upthrust params {}", name.split('.').next().unwrap_or(name)))
+            .table(table, &node.place, schema)?;
         serde_json::from_value(checked).map_err(|e| self.error(&node.place, Problem::Unfit(e.to_string())))
     }
 

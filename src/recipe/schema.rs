@@ -158,6 +158,9 @@ impl Checker<'_> {
         if !choices.is_empty() && !choices.contains(&text) {
             return Err(self.outside(key, node, schema, super::tree::quoted(text)));
         }
+        if schema["x-colour"] == json!(true) && !is_colour(text) {
+            return Err(self.outside(key, node, schema, super::tree::quoted(text)));
+        }
         // A sample that comes with the program needs no file; who reads it knows which there are.
         if schema["x-path"] != json!(true) || text.starts_with("sample:") {
             return Ok(json!(text));
@@ -187,15 +190,28 @@ impl Checker<'_> {
         if short || long {
             return Err(self.outside(key, node, schema, node.value.describe()));
         }
+        let colours = schema["x-colour"] == json!(true);
         let of = |i: usize| match &schema["prefixItems"][i] {
-            Json::Null => &schema["items"],
-            own => own,
+            Json::Null if colours => json!({ "type": "string", "x-colour": true }),
+            Json::Null => schema["items"].clone(),
+            own => own.clone(),
         };
         let name = |i: usize| format!("{key}[{}]", i + 1);
         let values: Result<Vec<_>, _> =
-            items.iter().enumerate().map(|(i, item)| self.value(&name(i), item, of(i))).collect();
-        values.map(Json::Array)
+            items.iter().enumerate().map(|(i, item)| self.value(&name(i), item, &of(i))).collect();
+        let values = values?;
+        let number = |i: usize| values.get(i).and_then(Json::as_f64);
+        if schema["x-rising"] == json!(true) && number(0) >= number(1) {
+            let shown = |i: usize| values[i].as_number().map(plain_number).unwrap_or_default();
+            return Err(self.outside(key, node, schema, format!("[{}, {}]", shown(0), shown(1))));
+        }
+        Ok(Json::Array(values))
     }
+}
+
+/// Whether a text is a colour, "#rrggbb".
+fn is_colour(text: &str) -> bool {
+    text.strip_prefix('#').is_some_and(|code| code.len() == 6 && code.bytes().all(|b| b.is_ascii_hexdigit()))
 }
 
 /// The alternatives of a schema without `null`; choices between words stay one.
@@ -273,6 +289,7 @@ pub(crate) fn wanted(schema: &Json) -> String {
         Some("number") => join("a number", &range(schema)),
         Some("boolean") => "true or false".to_owned(),
         Some("string") if schema["x-path"] == json!(true) => "the path of a file".to_owned(),
+        Some("string") if schema["x-colour"] == json!(true) => "a colour such as '#3fa7a5'".to_owned(),
         Some("string") => "a text in quotes".to_owned(),
         Some("array") => wanted_list(schema),
         Some("object") => "a table".to_owned(),
@@ -282,6 +299,12 @@ pub(crate) fn wanted(schema: &Json) -> String {
 
 fn wanted_list(schema: &Json) -> String {
     let items = &schema["items"];
+    if schema["x-colour"] == json!(true) {
+        return format!("a list of {} colours such as '#3fa7a5'", schema["minItems"]);
+    }
+    if schema["x-rising"] == json!(true) {
+        return format!("two numbers, the first below the second, each {}", range(items));
+    }
     let item = match wanted(items).as_str() {
         "a value" => String::new(),
         "a number" => " numbers".to_owned(),

@@ -45,6 +45,23 @@ impl Stage {
         defaults.is_some_and(|keys| keys.keys().any(|key| key.starts_with("duration_")))
     }
 
+    /// Years that it is to last, by its parameters; 0 where it takes no time.
+    pub fn duration_yr(&self) -> f64 {
+        const HOURS_PER_YEAR: f64 = 365.25 * 24.0;
+        let units = [
+            ("yr", 1.0),
+            ("kyr", 1e3),
+            ("myr", 1e6),
+            ("h", 1.0 / HOURS_PER_YEAR),
+            ("min", 1.0 / HOURS_PER_YEAR / 60.0),
+        ];
+        let of = |(unit, years): (&str, f64)| {
+            let key = format!("duration_{unit}");
+            Some(self.params.get(&key).or(self.kind.defaults.get(&key))?.as_f64()? * years)
+        };
+        units.into_iter().find_map(of).unwrap_or(0.0)
+    }
+
     /// Whether its time is that of weather and not of the Earth: minutes or hours of water, which move no mountain.
     pub fn takes_hours(&self) -> bool {
         ["duration_min", "duration_h"].iter().any(|key| self.kind.defaults.get(key).is_some())

@@ -354,3 +354,60 @@ proptest! {
         well_said(Plan::new(&source(&text), &Overrides { set, ..Default::default() }))?;
     }
 }
+
+#[test]
+fn a_scene_is_checked_to_its_last_key() {
+    let scene = |text: &str| format!("[[stage]]\nkind = \"probe\"\n{text}");
+    let cases = [
+        ("[scene]\nfgo = 1\n", "t.toml:4: unknown key 'fgo' in [scene] (did you mean 'fog'?)"),
+        (
+            "[scene.sun]\ntime_of_day_h = 99\n",
+            "t.toml:4: 'time_of_day_h' in 'sun' of [scene] must be a number between 0 and 48 h, not 99",
+        ),
+        (
+            "[scene.water]\ndark = \"blue\"\n",
+            "t.toml:4: 'dark' in 'water' of [scene] must be a colour such as '#3fa7a5', not 'blue'",
+        ),
+        (
+            "[scene.lava]\ncolours = [\"#000000\", \"#ff00\", \"#ffff00\"]\n",
+            "t.toml:4: 'colours[2]' in 'lava' of [scene] must be a colour such as '#3fa7a5', not '#ff00'",
+        ),
+        (
+            "[scene.lava]\ncolours = [\"#000000\"]\n",
+            "t.toml:4: 'colours' in 'lava' of [scene] must be a list of 3 colours such as '#3fa7a5', not a list of 1",
+        ),
+        (
+            "[scene.ground]\nrock_deg = [42, 28]\n",
+            "t.toml:4: 'rock_deg' in 'ground' of [scene] must be two numbers, the first below the second, each between 0 and 90, not [42, 28]",
+        ),
+        (
+            "[scene.ground]\nsand = \"no.png\"\n",
+            "t.toml:4: 'sand' in 'ground' of [scene]: there is no file 'no.png' (paths are relative to the recipe)",
+        ),
+        (
+            "[[scene.camera.keys]]\nat = 0.5\nview_dge = 3\n",
+            "t.toml:5: unknown key 'view_dge' in 'keys[1]' of 'camera' of [scene] (did you mean 'view_deg'?)",
+        ),
+        (
+            "[[scene.camera.keys]]\nat = 0.5\n[[scene.camera.keys]]\nat = 0.5\n",
+            "t.toml:6: 'at' of a key of the camera is 0.5, and must lie behind that of the key before it",
+        ),
+    ];
+    for (text, line) in cases {
+        assert_eq!(refused(&scene(text)), line);
+    }
+    let plan = with(&["scene.sun.time_of_day_h=21", "scene.camera.keys=[{at=0.2, distance=0.5}]"]).unwrap();
+    assert_eq!(plan.scene.sun.time_of_day_h, 21.0);
+    assert_eq!(plan.scene.camera.keys[0].distance, Some(0.5));
+    // What was set is in the text that a world remembers.
+    let again = read_scene(&source(&plan.text), &["scene.fog.on=false".into()]).unwrap();
+    assert_eq!((again.sun.time_of_day_h, again.fog.on), (21.0, false));
+    let bare = read_scene(&source("exaggeration = 2\n[fog]\non = false\n"), &[]).unwrap();
+    assert_eq!((bare.exaggeration, bare.fog.on), (Some(2.0), false));
+    assert!(read_scene(&source("[scene]\n[[stage]]\nkind = \"import\"\nfile = \"gone.png\"\n"), &[]).is_ok());
+    let line = with(&["scene.sun.tme_of_day_h=3"]).unwrap_err().to_string();
+    let want =
+        "--set scene.sun.tme_of_day_h: unknown key 'tme_of_day_h' in 'sun' of [scene] (did you mean 'time_of_day_h'?)";
+    assert_eq!(line, want);
+    assert_eq!(with(&[]).unwrap().scene, crate::scene::SceneParams::default());
+}

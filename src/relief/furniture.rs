@@ -15,6 +15,7 @@ const INK: Ink = Ink::hex(0x2d3438);
 const FAINT: Ink = Ink::hex(0x6d7478);
 
 /// Marks along a legend's bar: place, 0 to 1, and text.
+#[derive(Clone)]
 pub struct Ticks(Vec<(f32, String)>);
 
 impl Ticks {
@@ -39,6 +40,7 @@ impl Ticks {
     }
 }
 
+#[derive(Clone)]
 enum Body {
     /// The lower half of the bar may have other colours.
     Bar {
@@ -51,6 +53,7 @@ enum Body {
 }
 
 /// What the colours mean.
+#[derive(Clone)]
 pub struct Legend {
     title: String,
     body: Body,
@@ -136,7 +139,21 @@ impl Legend {
         self
     }
 
-    /// Draws into a box; returns the height it took.
+    /// The height that it takes in a box of this width, pixels.
+    pub fn tall(&self, width: f32, u: f32) -> f32 {
+        match &self.body {
+            Body::Bar { .. } => 56.0 * u,
+            Body::Swatches(swatches) => {
+                let wide = swatches.iter().map(|(_, name)| 30.0 * u + text::width(name, 12.0 * u));
+                let (lines, _) = wide.fold((1, 0.0), |(lines, at), wide| {
+                    if at + wide > width + 12.0 * u && at > 0.0 { (lines + 1, wide) } else { (lines, at + wide) }
+                });
+                (20.0 + 17.0 * lines as f32) * u
+            }
+        }
+    }
+
+    /// Draws into a box.
     pub fn draw(&self, canvas: &mut Canvas, [x, y]: [f32; 2], width: f32, u: f32) {
         let size = 13.0 * u;
         text::write(canvas, &self.title, [x, y + 11.0 * u], size, Align::Left, INK);

@@ -11,6 +11,7 @@
 
 mod coast;
 mod cover;
+mod drape;
 pub mod film;
 mod frame;
 mod furniture;
@@ -28,6 +29,7 @@ mod text;
 mod tint;
 
 pub use cover::LAYERS as CLIMATE;
+pub use drape::{Drape, Margins};
 pub use sheet::contact_sheet;
 
 use image::RgbImage;
@@ -111,8 +113,24 @@ pub enum ReliefError {
     TooLarge(usize, usize),
 }
 
+/// A map without what stands around it.
+struct Painting {
+    canvas: marks::Canvas,
+    frame: Frame,
+    legend: furniture::Legend,
+    symbols: Vec<furniture::Symbol>,
+}
+
 /// Draws the world.
 pub fn map(world: &World, view: &View, options: &Options) -> Result<RgbImage, ReliefError> {
+    let Painting { mut canvas, frame, legend, symbols } = painted(world, view, options)?;
+    if options.furniture {
+        canvas = furniture::surround(canvas, &frame, &legend, &symbols, options.title.as_deref());
+    }
+    Ok(canvas.into_image())
+}
+
+fn painted(world: &World, view: &View, options: &Options) -> Result<Painting, ReliefError> {
     let frame = Frame::new(world.grid, options.max_px, options.min_px);
     let (width, height) = (frame.grid.width, frame.grid.height);
     if width.max(height) > 32_000 || width.saturating_mul(height) > marks::MOST_PIXELS {
@@ -152,10 +170,7 @@ pub fn map(world: &World, view: &View, options: &Options) -> Result<RgbImage, Re
     if options.overlay {
         symbols = overlay::draw(&mut canvas, &frame, world);
     }
-    if options.furniture {
-        canvas = furniture::surround(canvas, &frame, &legend, &symbols, options.title.as_deref());
-    }
-    Ok(canvas.into_image())
+    Ok(Painting { canvas, frame, legend, symbols })
 }
 
 /// The flat colours of heights on maps of this world: linear red, green and blue, 0 to 1.

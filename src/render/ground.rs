@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::{RenderError, cover::Covers, fire::with_molten, shade::sky_share};
 use crate::{
     grid::Field,
-    scene::SceneParams,
+    scene::{SceneParams, Surround},
     world::{Layer, World},
 };
 
@@ -83,6 +83,17 @@ impl Lie {
     pub fn wave_m(&self) -> f64 {
         (self.extent_m[0] * 2.5e-3).clamp(24.0, 2500.0)
     }
+}
+
+/// The same scene with what it leaves to the world settled by this one, so that all pictures of a film are drawn alike.
+pub fn settled(world: &World, scene: &SceneParams) -> SceneParams {
+    let lie = Lie::new(world, &world.height(), scene);
+    let surround = match scene.surround {
+        Surround::Auto if lie.rim_at_sea => Surround::Sea,
+        Surround::Auto => Surround::Block,
+        given => given,
+    };
+    SceneParams { exaggeration: Some(lie.exaggeration), surround, ..scene.clone() }
 }
 
 fn rim_at_sea(height: &Field<f32>, sea_m: f32) -> bool {
@@ -172,11 +183,7 @@ impl<const N: usize> Average for [u8; N] {
 /// A raster and its smaller copies, each half the size, down to one texel.
 pub fn copies<T: Average>(size: [usize; 2], data: Vec<T>) -> Vec<([usize; 2], Vec<T>)> {
     let mut all = vec![(size, data)];
-    loop {
-        let (&[w, h], data) = all.last().map(|(size, data)| (size, data)).expect("the first is there");
-        if w == 1 && h == 1 {
-            return all;
-        }
+    while let Some(([w, h], data)) = all.last().map(|(size, data)| (*size, data)).filter(|([w, h], _)| w * h > 1) {
         let (to_w, to_h) = ((w / 2).max(1), (h / 2).max(1));
         let mut next = vec![data[0]; to_w * to_h];
         next.par_chunks_mut(to_w).enumerate().for_each(|(y, row)| {
@@ -193,6 +200,7 @@ pub fn copies<T: Average>(size: [usize; 2], data: Vec<T>) -> Vec<([usize; 2], Ve
         });
         all.push(([to_w, to_h], next));
     }
+    all
 }
 
 /// Whether a world has any of a layer.

@@ -8,6 +8,7 @@ use super::{
     fire::{self, Spread},
     ground::{Lie, Rasters, copies},
     lumps::{self, Lump},
+    overview::Overview,
     passes::{Slot, view},
     rivers::Rivers,
     shade::{coarse, sweep},
@@ -42,6 +43,9 @@ pub struct Land {
     pub(super) walls: wgpu::Buffer,
     pub(super) wall_corners: u32,
     pub(super) inland: Option<Inland>,
+    /// What covers the ground, and whether that is a map's colours.
+    pub(super) cover: wgpu::Texture,
+    pub(super) draped: bool,
     height: Field<f32>,
     shade_on: Field<f32>,
     shade: wgpu::Texture,
@@ -99,6 +103,8 @@ impl Land {
             walls: gpu.buffer("walls", &corners, wgpu::BufferUsages::VERTEX),
             wall_corners: corners.len() as u32,
             inland,
+            cover,
+            draped: false,
             height: rasters.height,
             shade_on,
             shade,
@@ -149,6 +155,11 @@ impl Land {
         for (level, (size, data)) in fire::halves(size, light).iter().enumerate() {
             gpu.write(&self.fire, (level as u32, 0), *size, data);
         }
+    }
+
+    /// The ground in pieces about so wide, m, for cameras.
+    pub(super) fn overview(&self, wide_m: f64) -> Overview {
+        Overview::new(&self.height, &self.lie, wide_m)
     }
 
     /// How the map lies in the scene.

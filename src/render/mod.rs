@@ -11,6 +11,7 @@ mod air;
 mod camera;
 mod cover;
 mod fire;
+mod drape;
 mod frame;
 mod glow;
 mod gpu;
@@ -20,7 +21,9 @@ mod land;
 mod lumps;
 #[cfg(test)]
 mod night;
+mod overview;
 mod passes;
+mod path;
 mod puff;
 mod renderer;
 mod rivers;
@@ -40,10 +43,11 @@ mod water_tests;
 pub use camera::Camera;
 pub use frame::{Lights, Moment};
 pub use gpu::Gpu;
-pub use ground::Lie;
+pub use ground::{Lie, settled};
 pub use hillshade::{Sun, hillshade};
 pub use land::Land;
 pub use lumps::Lump;
+pub use path::Path;
 pub use renderer::Renderer;
 
 /// Why there is no picture.

@@ -8,6 +8,7 @@ use super::{
     Gpu, RenderError,
     air::Air,
     camera::Camera,
+    drape::DRAPED,
     frame::{Frame, Lights, Moment, Sky},
     glow::{Copies, Glow},
     land::{GROUND, Land},
@@ -194,6 +195,9 @@ impl Renderer {
             land.shine(&self.gpu);
             let mut frame = Frame::new(scene, camera, &sky.lights, &sky.sky, &land.lie, moment);
             frame.lava[2] = f32::from(u8::from(land.lumps().is_some()));
+            if land.draped {
+                frame.cover2[2] = DRAPED;
+            }
             self.encode(land, scene, camera, moment, &frame, (sky, targets, &puffs));
             Ok(())
         })?;

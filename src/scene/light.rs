@@ -58,7 +58,7 @@ pub struct SkyParams {
     #[schemars(range(min = 0.0, max = 20.0), extend("x-unit" = "1", "x-effect" = "brighter nights"))]
     pub night: f64,
     /// A picture of the whole sky, twice as wide as high, north in its middle, instead of the computed one.
-    #[schemars(extend("x-file" = true))]
+    #[schemars(extend("x-path" = true))]
     pub picture: Option<String>,
     /// Whether the sun dazzles, with faint rings of the lens.
     pub glare: bool,

@@ -29,25 +29,25 @@ pub struct GroundParams {
     #[schemars(range(min = 0.0, max = 1000.0), extend("x-unit" = "m", "x-effect" = "wider beaches"))]
     pub sand_m: f64,
     /// Slope at which plants begin to leave bare rock, and at which none is left.
-    #[schemars(extend("x-unit" = "deg"))]
+    #[schemars(inner(range(min = 0.0, max = 90.0)), extend("x-unit" = "deg", "x-rising" = true))]
     pub rock_deg: [f64; 2],
     /// Slope at which snow begins to slide, and at which none is left.
-    #[schemars(extend("x-unit" = "deg"))]
+    #[schemars(inner(range(min = 0.0, max = 90.0)), extend("x-unit" = "deg", "x-rising" = true))]
     pub snow_deg: [f64; 2],
     /// Strength of the textures' relief.
     #[schemars(range(min = 0.0, max = 4.0), extend("x-unit" = "1", "x-effect" = "rougher ground"))]
     pub relief: f64,
     /// Picture of sand instead of the computed one.
-    #[schemars(extend("x-file" = true))]
+    #[schemars(extend("x-path" = true))]
     pub sand: Option<String>,
     /// Picture of grass.
-    #[schemars(extend("x-file" = true))]
+    #[schemars(extend("x-path" = true))]
     pub grass: Option<String>,
     /// Picture of rock.
-    #[schemars(extend("x-file" = true))]
+    #[schemars(extend("x-path" = true))]
     pub rock: Option<String>,
     /// Picture of snow.
-    #[schemars(extend("x-file" = true))]
+    #[schemars(extend("x-path" = true))]
     pub snow: Option<String>,
 }
 
@@ -92,8 +92,10 @@ pub struct WaterParams {
     /// How it is coloured: natural, rim or cellular.
     pub look: WaterLook,
     /// Colour where it is deep.
+    #[schemars(extend("x-colour" = true))]
     pub dark: String,
     /// Colour where it is shallow.
+    #[schemars(extend("x-colour" = true))]
     pub light: String,
     /// Depth in which light falls to 37 %; a large map's if not given.
     #[schemars(range(min = 0.01, max = 5000.0), extend("x-unit" = "m", "x-effect" = "clearer water"))]
@@ -145,6 +147,7 @@ pub struct LavaLook {
     /// Whether it glows as a black body does, or by the three colours.
     pub black_body: bool,
     /// Colours at 500, 900 and 1200 degC.
+    #[schemars(extend("x-colour" = true))]
     pub colours: [String; 3],
     /// Strength of its glow.
     #[schemars(range(min = 0.0, max = 20.0), extend("x-unit" = "1", "x-effect" = "brighter lava"))]

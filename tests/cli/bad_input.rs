@@ -3,7 +3,7 @@
 use super::Place;
 
 /// The command fails with this one line and code, and no file is made or lost.
-fn refused(place: &Place, arguments: &[&str], line: &str, code: i32) {
+pub fn refused(place: &Place, arguments: &[&str], line: &str, code: i32) {
     let before = place.files();
     let said = place.run(arguments);
     assert_eq!(said.err, format!("error: {line}\n"), "{arguments:?}");
@@ -116,7 +116,7 @@ fn worlds() {
         let said = place.run(&["inspect", world]);
         assert!(said.code == 2 && said.err.starts_with("error: ") && said.err.lines().count() == 1, "{}", said.err);
     }
-    let what = "--view slop: neither 'relief' nor a layer (did you mean 'slope'?)";
+    let what = "--view slop: neither 'relief', 'scene' nor a layer (did you mean 'slope'?)";
     refused(&place, &["render", "no", "a.png", "--view", "slop"], what, 2);
     refused(&place, &["render", "no", "a.png"], "no: there is no such world", 2);
     refused(

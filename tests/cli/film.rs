@@ -302,7 +302,7 @@ fn what_cannot_be_filmed_is_refused_in_one_line() {
     );
     refused(
         &["--video", "a.png", "--view", "relieff"],
-        "--view relieff: neither 'relief' nor a layer (did you mean 'relief'?)",
+        "--view relieff: neither 'relief', 'scene' nor a layer (did you mean 'relief'?)",
     );
     refused(
         &["--video", "a.png", "--view", "lava"],

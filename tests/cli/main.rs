@@ -10,6 +10,7 @@ mod interrupt;
 mod reference;
 mod report;
 mod round_trip;
+mod scene;
 
 use std::{
     path::{Path, PathBuf},

@@ -23,6 +23,7 @@ fn params_say_unit_range_default_and_effect() {
     assert_eq!(lines[row].split_whitespace().collect::<Vec<_>>(), ["height_m", "m", "0", "to", "20000", "2000"]);
     assert!(lines[row + 1].contains("Higher: "), "{}", lines[row + 1]);
     assert!(place.run(&["params", "world"]).out.contains("extent_km"));
+    assert!(place.run(&["params", "scene"]).out.contains("sun.time_of_day_h"));
     let said = place.run(&["params", "fmb"]);
     assert_eq!((said.code, said.err.as_str()), (2, "error: no stage kind 'fmb' (did you mean 'fbm'?)\n"));
     let schema: serde_json::Value = serde_json::from_str(&place.run(&["params", "--schema"]).out).unwrap();

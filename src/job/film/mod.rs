@@ -5,15 +5,21 @@
 //! proportion to time (`relief::film`). The first stage rises from flat ground, and the last picture is the finished
 //! world.
 //!
-//! It draws and encodes nothing itself: that is for `relief` and `export::video`.
+//! It draws and encodes nothing itself: that is for `relief`, `render` and `export::video`.
 
+#[cfg(feature = "render")]
+mod between;
 mod clock;
 mod heights;
 mod pace;
+mod painter;
 mod range;
 mod replay;
 mod request;
+#[cfg(feature = "render")]
+mod scene;
 mod sink;
+mod turn;
 
 pub(crate) use heights::HeightFrames;
 pub use heights::{FramesRequest, HEIGHTS_RANGE};
@@ -28,14 +34,12 @@ use super::JobError;
 use crate::{
     export::{ExportError, video::Encoder},
     grid::Grid,
-    relief::{
-        View,
-        film::{Animation, Options, Shot, Words},
-    },
+    relief::film::Words,
     timeline::{Checkpoint, Interest, Moment},
-    world::{Layer, World},
+    world::World,
 };
 use pace::Clip;
+use painter::{Painter, Shot, Stand};
 
 /// How long the last picture stands, s.
 const HOLD_S: f64 = 1.0;
@@ -44,12 +48,12 @@ const SLACK: f64 = 1e-9;
 
 /// A film being made. Dropped before [`Film::finish`], it leaves nothing behind.
 pub struct Film {
-    animation: Animation,
-    options: Options,
+    painter: Painter,
     /// The grid of the worlds; a stage may leave another one behind.
     grid: Grid,
     encoder: Encoder,
     clips: Vec<Clip>,
+    per_second: f64,
     clock: bool,
     /// The stage being shown, and what its clip counts from.
     stage: usize,
@@ -71,14 +75,14 @@ pub struct Film {
 impl Film {
     /// Begins a film of worlds over `grid`; says before anything runs what cannot be done.
     pub fn new(plan: &FilmPlan, grid: Grid) -> Result<Self, JobError> {
-        let animation = Animation::new(grid, &plan.animation);
+        let painter = Painter::new(plan, grid)?;
         let encoder = Encoder::open(&plan.file, &plan.encoding)?;
         Ok(Self {
-            animation,
-            options: plan.animation.clone(),
+            painter,
             grid,
             encoder,
             clips: plan.clips.clone(),
+            per_second: plan.encoding.rate.per_second(),
             clock: plan.clock,
             stage: 0,
             began_yr: 0.0,
@@ -107,8 +111,7 @@ impl Film {
     pub fn wants(&self, moment: &Moment) -> Interest {
         let (at, next) =
             if moment.stage == self.stage { (self.place(moment, self.began_yr), self.next) } else { (0.0, 0.0) };
-        let ground_alone = matches!(self.options.view, View::Relief | View::Layer(Layer::Height));
-        let wanted = if ground_alone { Interest::Ground } else { Interest::Whole };
+        let wanted = if self.painter.shows_ground_alone() { Interest::Ground } else { Interest::Whole };
         wanted.when(moment.stage_over() || at + SLACK >= next)
     }
 
@@ -126,19 +129,20 @@ impl Film {
         }
         if world.grid != self.grid {
             // Between two maps there is nothing to be drawn: the film cuts to the new one.
-            self.animation = Animation::new(world.grid, &self.options);
+            self.painter.regrid(world.grid);
             self.grid = world.grid;
             self.flat_before = false;
             self.shot = None;
         }
-        let to = self.animation.shot(world)?;
+        let to = self.painter.shot(world)?;
         let first = || if self.flat_before { to.before() } else { to.clone() };
         let from = self.shot.take().unwrap_or_else(first);
         let at = self.place(moment, self.began_yr);
         self.shown = false;
         while self.next <= at + SLACK {
             let share = ((self.next - self.at) / (at - self.at)).clamp(0.0, 1.0) as f32;
-            self.draw([&from, &to], share, at - self.at)?;
+            let stand = self.stand();
+            self.draw([&from, &to], share, at - self.at, stand)?;
             self.shown = share >= 1.0;
             self.next += 1.0;
         }
@@ -147,7 +151,15 @@ impl Film {
         Ok(())
     }
 
-    fn draw(&mut self, [from, to]: [&Shot; 2], share: f32, pictures: f64) -> Result<(), JobError> {
+    /// Where the next picture stands in the whole film.
+    fn stand(&self) -> Stand {
+        let before: f64 = self.clips.iter().take(self.stage).map(Clip::pictures).sum();
+        let all: f64 = self.clips.iter().map(Clip::pictures).sum();
+        let at = before + self.next - 1.0;
+        Stand { share: (at / (all - 1.0).max(1.0)).clamp(0.0, 1.0), seconds: at / self.per_second }
+    }
+
+    fn draw(&mut self, [from, to]: [&Shot; 2], share: f32, pictures: f64, stand: Stand) -> Result<(), JobError> {
         let clock = if self.clock {
             let passed_yr = to.time_yr() - from.time_yr();
             let time_yr = from.time_yr() + passed_yr * f64::from(share);
@@ -158,7 +170,7 @@ impl Film {
         let caption = self.clips.get(self.stage).map_or("", |clip| clip.caption.as_str());
         self.begun = true;
         let mut picture = self.encoder.blank();
-        self.animation.draw([from, to], share, Words { caption, clock: &clock }, &mut picture);
+        self.painter.draw([from, to], share, stand, Words { caption, clock: &clock }, &mut picture)?;
         Ok(self.encoder.push(picture)?)
     }
 
@@ -167,7 +179,8 @@ impl Film {
         if let Some(last) = self.shot.take()
             && !self.shown
         {
-            self.draw([&last, &last], 1.0, 1.0)?;
+            let stand = Stand { share: 1.0, ..self.stand() };
+            self.draw([&last, &last], 1.0, 1.0, stand)?;
         }
         if !self.begun {
             // The encoder is dropped and leaves nothing.

@@ -19,8 +19,8 @@ pub struct Clip {
 enum Pace {
     /// So many pictures, spread over the stage's steps.
     Pictures(f64),
-    /// A picture for so many years.
-    YearsPerPicture(f64),
+    /// A picture for so many years, of so many that the stage is to last.
+    YearsPerPicture(f64, f64),
 }
 
 impl Clip {
@@ -28,7 +28,15 @@ impl Clip {
     pub fn place(&self, done: f64, passed_yr: f64) -> f64 {
         match self.pace {
             Pace::Pictures(count) => done.clamp(0.0, 1.0) * count,
-            Pace::YearsPerPicture(years) => passed_yr / years,
+            Pace::YearsPerPicture(years, _) => passed_yr / years,
+        }
+    }
+
+    /// How many pictures it is to have.
+    pub fn pictures(&self) -> f64 {
+        match self.pace {
+            Pace::Pictures(count) => count,
+            Pace::YearsPerPicture(years, of) => of / years,
         }
     }
 }
@@ -42,12 +50,17 @@ pub fn clips(plan: &Plan, until: Option<usize>, per_second: f64) -> Vec<Clip> {
     let clip = |stage: &&Stage| {
         let pace = match stage.film {
             Some(FilmTime::Seconds(s)) => Pace::Pictures((s * per_second).round()),
-            Some(FilmTime::YearsPerSecond(years)) => Pace::YearsPerPicture(years / per_second),
+            Some(FilmTime::YearsPerSecond(years)) => Pace::YearsPerPicture(years / per_second, stage.duration_yr()),
             None => Pace::Pictures((USUAL_S * per_second * weight(stage) / all).round().max(1.0)),
         };
         Clip { caption: stage.kind.title.to_owned(), pace }
     };
     running.iter().map(clip).collect()
+}
+
+/// The clip of a world that stands still.
+pub fn standing(pictures: f64) -> Vec<Clip> {
+    vec![Clip { caption: String::new(), pace: Pace::Pictures(pictures) }]
 }
 
 /// The clips of so many stages of which nothing is known.
@@ -82,6 +95,8 @@ mod tests {
         assert_eq!(pictures(&[base, "film_seconds = 0\n", warp, "film_seconds = 0\n"].concat()), [0.0, 0.0]);
         let timed = clips_of(&[plates, "film_yr_per_s = 3e6\n"].concat(), 30.0);
         assert_eq!(timed[0].place(0.5, 2e6), 20.0);
+        let myr = clips_of(&[plates, "duration_myr = 60\nfilm_yr_per_s = 3e6\n"].concat(), 30.0)[0].pictures();
+        assert!((myr - 600.0).abs() < 1e-9, "{myr}");
         let timed = clips_of(&[plates, "film_s_per_s = 86400\n"].concat(), 24.0);
         assert!((timed[0].place(0.5, 1.0 / 365.25) - 24.0).abs() < 1e-9);
         assert_eq!((timed[0].caption.as_str(), timed.len()), ("Plates", 1));

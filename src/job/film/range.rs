@@ -24,14 +24,30 @@ pub(super) fn range_over_sea(plan: &Plan, until: Option<usize>, cancel: &AtomicB
         return Ok(EARTH_M);
     }
     let mut span = Span(None);
-    let small = plan.shrunk(TRIAL_SIDE).without_hours();
-    match Timeline::new(&small, cancel).until(until).run(&mut [&mut span], &mut |_| ()) {
-        Ok(last) => span.add(&last),
-        Err(TimelineError::Cancelled) => return Err(TimelineError::Cancelled.into()),
-        // What is wrong on the small map may be right on the whole one; if not, the run itself will say so.
-        Err(_) => {}
+    if let Some(last) = run(plan, until, cancel, &mut [&mut span])? {
+        span.add(&last);
     }
     Ok(span.0.unwrap_or(EARTH_M))
+}
+
+/// The world that a small trial ends with.
+pub(super) fn trial(plan: &Plan, until: Option<usize>, cancel: &AtomicBool) -> Result<Option<World>, JobError> {
+    run(plan, until, cancel, &mut [])
+}
+
+fn run(
+    plan: &Plan,
+    until: Option<usize>,
+    cancel: &AtomicBool,
+    sinks: &mut [&mut dyn Sink],
+) -> Result<Option<World>, JobError> {
+    let small = plan.shrunk(TRIAL_SIDE).without_hours();
+    match Timeline::new(&small, cancel).until(until).run(sinks, &mut |_| ()) {
+        Ok(last) => Ok(Some(last)),
+        Err(TimelineError::Cancelled) => Err(TimelineError::Cancelled.into()),
+        // What is wrong on the small map may be right on the whole one; if not, the run itself will say so.
+        Err(_) => Ok(None),
+    }
 }
 
 /// The heights of a world and some more, m over its sea.

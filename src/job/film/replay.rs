@@ -7,9 +7,12 @@ use std::{
 
 use super::{Film, FilmPlan, FilmRequest, pace, range};
 use crate::{
-    job::{Event, JobError, open_world},
+    job::{
+        Event, JobError, open_world,
+        scene::{self, View},
+    },
     recipe::{Overrides, Plan, Source},
-    relief::{CLIMATE, View},
+    relief::CLIMATE,
     timeline::{Interest, Moment, TimelineError},
     world::{
         World,
@@ -24,10 +27,25 @@ pub fn replay(
     cancel: &AtomicBool,
     tell: &mut dyn FnMut(Event),
 ) -> Result<PathBuf, JobError> {
+    match View::parse(&request.view)? {
+        View::Map(_) => request.scene.refuse_for_maps()?,
+        View::Scene(_) => scene::check_build()?,
+    }
+    if let Some(seconds) = request.seconds {
+        return super::turn::film(path, request, seconds, cancel, tell);
+    }
     let (world, provenance) = open_world(path)?;
     let recording = Recording::open(path, world.grid)?.filter(|recording| !recording.frames().is_empty());
     let Some(recording) = recording else {
-        let what = "no timeline was kept in it; grow it with --keep-timeline, or film it while it grows with --video";
+        let what = match View::parse(&request.view)? {
+            View::Map(_) => {
+                "no timeline was kept in it; grow it with --keep-timeline, or film it while it grows with --video"
+            }
+            View::Scene(_) => {
+                "no timeline was kept in it; for the finished world and a camera that moves, say how long, such as \
+                 --seconds 10"
+            }
+        };
         return Err(JobError::Refused(format!("{}: {what}", path.display())));
     };
     let planned = plan(request, &recording, &world, &provenance)?;
@@ -79,15 +97,17 @@ fn plan(
     // A recipe whose files are gone by now only costs the film its captions and its pace.
     let recipe = Plan::new(&source, &Overrides::default()).ok();
     let title = recipe.as_ref().map_or(provenance.name.as_str(), |recipe| recipe.title.as_str());
-    let (mut planned, view) = FilmPlan::of(request, title)?;
-    if let View::Layer(layer) = view
+    let (mut planned, view) = FilmPlan::of(request, title, request.scene.of_world(provenance)?)?;
+    planned.settle(world);
+    if let Some(layer) = view.layer()
         && !layer.derived()
         && !recording.layers().contains(&layer)
     {
         let kept: Vec<&str> = recording.layers().iter().map(|layer| layer.name()).collect();
         let name = layer.name();
         return Err(JobError::Refused(format!(
-            "--view {name}: that layer was not kept (there are: relief, {}); grow with --keep-timeline={name}",
+            "--view {}: that layer was not kept (there are: relief, {}); grow with --keep-timeline={name}",
+            request.view,
             kept.join(", ")
         )));
     }

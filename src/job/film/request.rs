@@ -8,14 +8,18 @@ use std::{
 use super::{
     HOLD_S,
     pace::{Clip, clips},
-    range::{EARTH_M, range_over_sea},
+    range::{EARTH_M, range_over_sea, trial},
 };
 use crate::{
     export::video::{Encoder, Format, Rate, Settings},
-    job::{JobError, picture},
+    job::{
+        JobError, picture,
+        scene::{self, SceneRequest, View},
+    },
     recipe::Plan,
-    relief::{CLIMATE, View, film},
-    world::Layer,
+    relief::{self, CLIMATE, film},
+    scene::SceneParams,
+    world::{Layer, World},
 };
 
 /// A film as it is asked for.
@@ -27,7 +31,7 @@ pub struct FilmRequest {
     pub rate: Option<Rate>,
     /// Width and height, pixels; the format's usual ones where absent.
     pub size: Option<[usize; 2]>,
-    /// `relief`, or a layer's name.
+    /// `relief`, a layer's name, `scene`, or `scene:` and one of the former.
     pub view: String,
     /// Whether the time is shown.
     pub clock: bool,
@@ -35,6 +39,10 @@ pub struct FilmRequest {
     pub smoke: bool,
     /// What ffmpeg is told besides.
     pub ffmpeg_args: Vec<String>,
+    /// What flags say of the scene.
+    pub scene: SceneRequest,
+    /// Length of a film of the finished world, s, instead of one of its growth.
+    pub seconds: Option<f64>,
     /// Whether it takes the place of a film that is there.
     pub replace: bool,
 }
@@ -48,8 +56,20 @@ pub struct FilmPlan {
     pub in_folder: bool,
     pub(super) encoding: Settings,
     pub(super) animation: film::Options,
+    /// The scene, where it is none of maps.
+    pub(super) scene: Option<SceneFilm>,
     pub(super) clips: Vec<Clip>,
     pub(super) clock: bool,
+}
+
+/// A film of scenes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SceneFilm {
+    pub scene: SceneParams,
+    /// The scene as the last world settles what it leaves to worlds, and the extent of that world's map, m.
+    pub settled: Option<([f64; 2], SceneParams)>,
+    /// The map whose colours lie over the land.
+    pub drape: Option<relief::View>,
 }
 
 impl FilmPlan {
@@ -61,10 +81,15 @@ impl FilmPlan {
         until: Option<usize>,
         cancel: &AtomicBool,
     ) -> Result<Self, JobError> {
-        let (mut planned, view) = Self::of(request, &plan.title)?;
+        let (mut planned, view) = Self::of(request, &plan.title, request.scene.of_recipe(&plan.scene)?)?;
         let made = made(plan, until)?;
-        if let View::Layer(layer) = view {
+        if let Some(layer) = view.layer() {
             check_layer(&made, layer)?;
+        }
+        if planned.scene.is_some()
+            && let Some(last) = trial(plan, until, cancel)?
+        {
+            planned.settle(&last);
         }
         planned.animation.climate = CLIMATE.iter().all(|layer| made.contains(layer));
         planned.animation.range_m = range_over_sea(plan, until, cancel)?;
@@ -73,7 +98,7 @@ impl FilmPlan {
     }
 
     /// What a request says by itself: no clip yet, and no range.
-    pub(super) fn of(request: &FilmRequest, title: &str) -> Result<(Self, View), JobError> {
+    pub(super) fn of(request: &FilmRequest, title: &str, scene: SceneParams) -> Result<(Self, View), JobError> {
         let file = match &request.file {
             Some(file) => file.clone(),
             // Smaller, but there.
@@ -87,11 +112,18 @@ impl FilmPlan {
         if request.file.is_some() {
             check_place(&file, format, request.replace)?;
         }
-        let view = picture::view(&request.view)?;
+        let view = View::parse(&request.view)?;
+        let scene = match view {
+            View::Map(_) => request.scene.refuse_for_maps().map(|()| None)?,
+            View::Scene(drape) => {
+                scene::check_build()?;
+                Some(SceneFilm { scene: quiet(scene, request, drape), settled: None, drape })
+            }
+        };
         let ffmpeg_args = request.ffmpeg_args.clone();
         let animation = film::Options {
             size,
-            view,
+            view: view.map().unwrap_or_default(),
             range_m: EARTH_M,
             climate: false,
             smoke: request.smoke,
@@ -101,11 +133,21 @@ impl FilmPlan {
             in_folder: request.file.is_none(),
             encoding: Settings { format, size, rate, hold_s: HOLD_S, ffmpeg_args },
             animation,
+            scene,
             clips: Vec::new(),
             clock: request.clock,
             file,
         };
         Ok((planned, view))
+    }
+
+    /// Settles what a scene leaves to worlds by the one that it is to end with, so that all its pictures are drawn alike.
+    #[cfg_attr(not(feature = "render"), expect(unused_variables, reason = "this build draws no scenes"))]
+    pub(super) fn settle(&mut self, last: &World) {
+        #[cfg(feature = "render")]
+        if let Some(film) = &mut self.scene {
+            film.settled = Some((last.grid.extent_m(), crate::render::settled(last, &film.scene)));
+        }
     }
 
     /// The same film in a folder.
@@ -115,6 +157,15 @@ impl FilmPlan {
         }
         self
     }
+}
+
+/// The scene without what is not to be seen.
+fn quiet(mut scene: SceneParams, request: &FilmRequest, drape: Option<relief::View>) -> SceneParams {
+    scene.smoke.on &= request.smoke;
+    if drape.is_some() {
+        scene::dry(&mut scene);
+    }
+    scene
 }
 
 /// Refuses early what could not be written at the end.

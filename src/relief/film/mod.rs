@@ -27,10 +27,10 @@ use super::{
 };
 use crate::{
     grid::{Field, Grid},
-    world::World,
+    world::{Layer, World},
 };
 use resample::Resampler;
-use sheet::Sheet;
+pub(super) use sheet::Sheet;
 use shore::Shore;
 use tints::Tints;
 
@@ -50,6 +50,13 @@ pub struct Options {
     pub smoke: bool,
     /// The film's name.
     pub title: Option<String>,
+}
+
+impl Options {
+    /// Whether pictures need no more of a world than its ground and its weather.
+    pub fn shows_ground_alone(&self) -> bool {
+        matches!(self.view, View::Relief | View::Layer(Layer::Height))
+    }
 }
 
 /// What is written on a picture.

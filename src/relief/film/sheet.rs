@@ -80,11 +80,14 @@ impl Sheet {
         let (title_line, caption, clock) = match room {
             Room::Right => {
                 let (x, wide) = (left + 30.0 * u, right as f32 - 60.0 * u);
-                legend.draw(&mut canvas, [x, h - 92.0 * u], wide.min(460.0 * u), 1.15 * u);
+                let across = wide.min(460.0 * u);
+                // Many names take many lines.
+                let below = (legend.tall(across, 1.15 * u) + 20.0 * u).max(92.0 * u);
+                legend.draw(&mut canvas, [x, h - below], across, 1.15 * u);
                 (
                     line([x, 34.0 * u], wide, 30.0 * u, INK),
                     line([x, 84.0 * u], wide, 21.0 * u, FAINT),
-                    line([x, h - 172.0 * u], wide, 34.0 * u, INK),
+                    line([x, h - below - 80.0 * u], wide, 34.0 * u, INK),
                 )
             }
             Room::Below => {
