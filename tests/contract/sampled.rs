@@ -14,7 +14,7 @@ use proptest::{
 use serde_json::{Map, Value};
 use upthrust::{
     erosion::{HydraulicCellsParams, PipesParams, RainParticlesParams},
-    grid::{Field, Grid},
+    grid::{Edges, Field, Grid},
     process::Context,
     recipe::{Overrides, Plan, Source, find_stage},
     world::{Layer, Matter, World},
@@ -175,6 +175,14 @@ fn start() -> impl Strategy<Value = Start> {
 }
 
 impl Start {
+    fn rim(&self) -> Edges {
+        match self.edges {
+            "open" => Edges::Open,
+            "closed" => Edges::Closed,
+            _ => Edges::Wrap,
+        }
+    }
+
     /// Numbers from 0 to 1 by cell.
     fn noise(&self, grid: &Grid, layer: u64) -> Field<f32> {
         Field::from_fn(*grid, |x, y| {
@@ -243,7 +251,7 @@ fn run(kind: &str, start: &Start, picks: &[Pick]) -> TestCaseResult {
     let schema = &find_stage(kind).unwrap().schema;
     let extent_km = 1e-3 * start.cell_m * start.size[0] as f64;
     let sampled = table(schema, &mut picks.iter().copied(), extent_km);
-    let grid = Grid::new(start.size[0], start.size[1], 1e3 * extent_km, upthrust::grid::Edges::Open);
+    let grid = Grid::new(start.size[0], start.size[1], 1e3 * extent_km, start.rim());
     let params = bounded(kind, together(kind, sampled.as_object().unwrap().clone(), &grid), &grid);
     let text = start.text(kind, &params);
     let source = Source { name: "case".into(), file: "case.toml".into(), folder: PathBuf::new(), text: text.clone() };

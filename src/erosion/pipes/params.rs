@@ -3,7 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{erosion::stage::Lock, grid::Grid};
+use crate::{
+    erosion::stage::Lock,
+    grid::{Edges, Grid},
+};
 
 /// More steps than anyone waits for.
 const MOST_STEPS: f64 = 1e6;
@@ -257,10 +260,21 @@ impl PipesParams {
         })
     }
 
-    /// Steps of water that it takes, about: in water of a metre, and at springs as deep as these make it.
+    /// Steps of water that it takes, about: in water of a metre, at springs as deep as these make it, and within a rim that
+    /// keeps all of it in water as deep as that.
     pub fn sub_steps(&self, grid: &Grid) -> f64 {
         let springs = self.springs.iter().map(|spring| self.steps_of(spring, grid.cell_m));
-        springs.fold(self.steps_in(grid, METRE), f64::max)
+        let kept = if grid.edges == Edges::Open { 0.0 } else { self.depth_kept(grid) };
+        springs.fold(self.steps_in(grid, METRE.max(kept)), f64::max)
+    }
+
+    /// Depth of water that takes as many steps as what rises evenly to where all of it stands on the map, m.
+    pub(super) fn depth_kept(&self, grid: &Grid) -> f64 {
+        let area = grid.cell_area_m2() * grid.cells() as f64;
+        let springs: f64 = self.springs.iter().map(|spring| spring.flow_m3_per_s).sum();
+        let rise = 1e-3 / 3600.0 * self.rain_mm_per_h + springs / area;
+        // The mean of the root of a depth that rises to 1 is 2/3.
+        4.0 / 9.0 * rise * 3600.0 * self.duration_h * (1.0 - self.recession)
     }
 
     /// Steps in water of a depth, by the speed of its waves.

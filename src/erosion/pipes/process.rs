@@ -6,7 +6,7 @@ use crate::{
         bed::Bed,
         stage::{FamilyParams, Lock, Stage, cell_size, in_words, peak},
     },
-    grid::{Field, Grid, for_each_row, sum_f64},
+    grid::{Edges, Field, Grid, for_each_row, sum_f64},
     noise::Key,
     process::{Placement, Process, ProcessError},
     world::{Clocks, Layer, World},
@@ -59,7 +59,11 @@ impl FamilyParams for PipesParams {
 
     fn meets(&self, world: &World) -> Result<(), String> {
         let deepest = world.layer(Layer::Water).and_then(Field::range).map_or(0.0, |(_, most)| f64::from(most));
-        self.check_depth(&world.grid, deepest)
+        self.check_depth(&world.grid, deepest)?;
+        let sea = || world.height().data.iter().any(|&z| f64::from(z) < world.sea_level_m);
+        // Nothing takes the water: it rises for as long as it rains and springs run.
+        let rises = world.grid.edges != Edges::Open && !(self.sea && sea());
+        if rises { self.check_depth(&world.grid, self.depth_kept(&world.grid)) } else { Ok(()) }
     }
 
     fn remarks(&self, grid: &Grid) -> Vec<String> {
@@ -85,23 +89,23 @@ impl FamilyParams for PipesParams {
         world.set_layer(Layer::Water, Field { grid, data: solver.water_m(bed) });
         world.set_layer(Layer::Suspended, Field { grid, data: solver.suspended_m().to_vec() });
         peak(world, Layer::Flow, &solver.discharge());
-        let speed = solver.speed();
-        for (axis, layer) in [Layer::FlowEast, Layer::FlowSouth].into_iter().enumerate() {
-            at_peak(world, layer, &solver.velocity(axis), &speed);
-        }
-        peak(world, Layer::FlowSpeed, &speed);
+        show_velocity(solver, world);
     }
 }
 
-/// Sets a layer to these values wherever the water is faster than it has been.
-fn at_peak(world: &mut World, layer: Layer, values: &[f32], speed: &[f32]) {
-    let before = world.layer(Layer::FlowSpeed).cloned();
-    let fastest = |i: usize| before.as_ref().map_or(0.0, |before| before.data[i]);
-    let width = world.grid.width;
-    for_each_row(&mut world.layer_mut(layer).data, width, |y, row| {
-        for (x, kept) in row.iter_mut().enumerate() {
-            let i = y * width + x;
-            *kept = if speed[i] > fastest(i) { values[i] } else { *kept };
-        }
-    });
+/// Notes speed and velocity wherever water is faster than it has been.
+fn show_velocity(solver: &Pipes, world: &mut World) {
+    let (grid, speed) = (world.grid, solver.speed());
+    let before = world.remove_layer(Layer::FlowSpeed).unwrap_or_else(|| Field::filled(grid, 0.0));
+    for (axis, layer) in [Layer::FlowEast, Layer::FlowSouth].into_iter().enumerate() {
+        let velocity = solver.velocity(axis);
+        for_each_row(&mut world.layer_mut(layer).data, grid.width, |y, row| {
+            for (x, kept) in row.iter_mut().enumerate() {
+                let i = y * grid.width + x;
+                *kept = if speed[i] > before.data[i] { velocity[i] } else { *kept };
+            }
+        });
+    }
+    world.set_layer(Layer::FlowSpeed, before);
+    peak(world, Layer::FlowSpeed, &speed);
 }
