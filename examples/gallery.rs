@@ -11,7 +11,6 @@ use std::{
     path::{Path, PathBuf},
     process::Command,
     sync::atomic::AtomicBool,
-    time::Instant,
 };
 
 use image::{RgbImage, codecs::jpeg::JpegEncoder};
@@ -65,9 +64,9 @@ fn main() -> Outcome<()> {
         page.draw("three-scales", &three_scales()?)?;
     }
     if wants("five-ways") {
-        let [eroded, flow] = five_ways()?;
-        page.draw("five-ways", &eroded)?;
-        page.draw("five-ways-flow", &flow)?;
+        for (name, picture) in five_ways()? {
+            page.draw(&name, &picture)?;
+        }
     }
     if wants("fire") {
         page.draw("fire", &fire()?)?;
@@ -371,8 +370,8 @@ fn three_scales() -> Outcome<RgbImage> {
 }
 
 /// The same hills as they were and after each family, and below what was worn off, a metre on the mean of the map; on
-/// another sheet how rain would run.
-fn five_ways() -> Outcome<[RgbImage; 2]> {
+/// another sheet how rain would run; and a picture for each family of the hills before, after, and what was laid down.
+fn five_ways() -> Outcome<Vec<(String, RgbImage)>> {
     const WAYS: [(&str, &str); 6] = [
         ("the start", ""),
         ("thermal", "talus_angle_deg = 25.0\nrock_angle_deg = 30.0\n"),
@@ -382,18 +381,21 @@ fn five_ways() -> Outcome<[RgbImage; 2]> {
         ("droplets", "duration_yr = 5500.0\n"),
     ];
     let options = Options::bare(PANEL);
-    let (mut above, mut below, mut flow) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut above, mut below, mut flow, mut pictures) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     // The table of docs/erosion.md.
     println!("| stage | set | mean wear | greatest | median slope | over 35° | streams, km/km² | pits | time |");
     println!("|---|---|---:|---:|---:|---:|---:|---:|---:|");
     for (name, params) in WAYS {
         let eroded = !name.contains(' ');
         let stage = if eroded { format!("[[stage]]\nkind = '{name}'\n{params}") } else { String::new() };
-        let begun = Instant::now();
-        let world = grow(&hills(&stage)?, &mut [])?;
-        let seconds = begun.elapsed().as_secs_f64();
-        let flowing = grow(&hills(&format!("{stage}[[stage]]\nkind = 'rivers'\ncarve = 0.0\n"))?, &mut [])?;
-        println!("{}", figures((name, params), &world, &flowing, seconds)?);
+        let plan = hills(&format!("{stage}[[stage]]\nkind = 'rivers'\ncarve = 0.0\n"))?;
+        let never = AtomicBool::new(false);
+        let (mut timeline, mut ends) = (Timeline::new(&plan, &never), Ends::default());
+        let flowing = timeline.run(&mut [&mut ends], &mut |_| ())?;
+        let record = timeline.records().iter().find(|record| record.kind == name);
+        let [.., world, _] = &ends.worlds[..] else { return Err("the hills have too few stages".into()) };
+        println!("{}", figures((name, params), world, &flowing, record.map_or(0.0, |record| record.seconds))?);
+        let relief = relief::map(world, &View::Relief, &options)?;
         let (seen, label) = match world.layer(Layer::Wear).filter(|_| eroded) {
             Some(wear) => {
                 let sum: f64 = wear.data.iter().map(|&v| v as f64).sum();
@@ -403,12 +405,20 @@ fn five_ways() -> Outcome<[RgbImage; 2]> {
             }
             None => (Layer::Slope, "slope".to_owned()),
         };
-        above.push((name.to_owned(), relief::map(&world, &View::Relief, &options)?));
-        below.push((label, relief::map(&world, &View::Layer(seen), &options)?));
+        above.push((name.to_owned(), relief.clone()));
+        below.push((label, relief::map(world, &View::Layer(seen), &options)?));
         flow.push((format!("{name}: discharge"), relief::map(&flowing, &View::Layer(Layer::Discharge), &options)?));
+        if eroded {
+            let deposit = relief::map(world, &View::Layer(Layer::Deposit), &options)?;
+            let before = ("before".to_owned(), above[0].1.clone());
+            let panels = [before, ("after".to_owned(), relief), ("laid down".to_owned(), deposit)];
+            pictures.push((format!("before-after-{name}"), relief::contact_sheet(&panels, panels.len())));
+        }
     }
     above.append(&mut below);
-    Ok([above, flow].map(|panels| relief::contact_sheet(&panels, WAYS.len())))
+    let sheets = [("five-ways", above), ("five-ways-flow", flow)];
+    pictures.extend(sheets.map(|(name, panels)| (name.to_owned(), relief::contact_sheet(&panels, WAYS.len()))));
+    Ok(pictures)
 }
 
 /// A row of the table: what a family wore off, and the land that it left.

@@ -235,7 +235,9 @@ impl ImportParams {
 fn findings(map: &Heightmap) -> Vec<String> {
     let [filled, all] = [map.filled, map.heights.len()];
     let share = 100.0 * filled as f64 / all as f64;
-    let line = || format!("{filled} of {all} cells ({share:.2} %) had no height and were filled in (no_data)");
+    let infinite = if map.infinite > 0 { format!(", {} of them infinite,", map.infinite) } else { String::new() };
+    let line =
+        || format!("{filled} of {all} cells ({share:.2} %) had no height{infinite} and were filled in (no_data)");
     Vec::from_iter((filled > 0).then(line))
 }
 
@@ -266,7 +268,7 @@ impl Process for Import {
     fn step(&mut self, world: &mut World, context: &Context) -> Result<Step, ProcessError> {
         context.check()?;
         let ground = self.placement.over(world)?;
-        let map = self.params.read().map_err(|e| ProcessError::Unfit(e.to_string()))?;
+        let map = self.params.read().map_err(EditError::into_process)?;
         self.findings = findings(&map);
         let heights = over(map, world.grid);
         context.check()?;

@@ -33,6 +33,8 @@ mod uplift;
 mod window;
 mod zoom;
 
+use crate::process::ProcessError;
+
 pub use hardness::HardnessParams;
 pub use import::{Endian, ImportParams, NoData, SourceFormat};
 pub use read::{Format, Header, Heightmap, MOST_SIDE, Sample};
@@ -48,6 +50,16 @@ pub struct EditError {
     pub file: String,
     /// What is wrong with it.
     pub problem: Problem,
+}
+
+impl EditError {
+    /// Why a stage stops that has met this while it ran: a broken file fails it, holes that are not wanted were asked about.
+    fn into_process(self) -> ProcessError {
+        match self.problem {
+            Problem::Disk(_) | Problem::Truncated | Problem::Damaged(_) => ProcessError::Failed(self.to_string()),
+            _ => ProcessError::Unfit(self.to_string()),
+        }
+    }
 }
 
 /// What is wrong with a file.

@@ -14,7 +14,7 @@ use crate::{
     grid::{Field, Grid, for_each_row, sum_f64, sum_rows},
     noise::Key,
     process::{Context, Placement, Process, ProcessError, State, Step},
-    world::{Layer, Matter, World},
+    world::{Clocks, Layer, Matter, World},
 };
 
 /// What a stage leaves where it is.
@@ -27,6 +27,9 @@ pub enum Lock {
     /// Land stays land, and sea sea.
     Coast,
 }
+
+/// Seconds in a day.
+const DAY_S: f64 = 86_400.0;
 
 /// How far from the sea's level heights stay at least where coasts are locked, m.
 const LEAST_MARGIN_M: f64 = 1e-4;
@@ -60,8 +63,18 @@ pub trait FamilyParams: Send + Sync + 'static {
     /// What passes on the clock of the land, years.
     fn duration_yr(&self) -> f64;
 
+    /// How long its water runs, and how many times that the bed's clock goes on by.
+    fn clocks(&self) -> Option<Clocks> {
+        None
+    }
+
     /// What does not go together, in one line with what helps.
     fn check(&self, _grid: &Grid) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// What does not go together with the world as the stage finds it, in one line with what helps.
+    fn meets(&self, _world: &World) -> Result<(), String> {
         Ok(())
     }
 
@@ -95,9 +108,10 @@ pub(super) fn cell_size(grid: &Grid, least_m: f64, most_m: f64) -> Option<String
 }
 
 /// How the clocks of water and land go.
-pub(super) fn clocks(water_h: f64, bed_yr: f64, factor: f64) -> String {
-    let (water, bed) = (span(water_h / 24.0), span(bed_yr * 365.25));
-    format!("{water} of water stand for {bed} of land (morphological_factor = {factor})")
+pub(super) fn in_words(clocks: Clocks) -> String {
+    let Clocks { water_s, morphological_factor } = clocks;
+    let (water, bed) = (span(water_s / DAY_S), span(water_s / DAY_S * morphological_factor));
+    format!("{water} of water stand for {bed} of land (morphological_factor = {morphological_factor})")
 }
 
 /// A span of time in the unit that suits it.
@@ -139,9 +153,13 @@ impl<T: FamilyParams> Stage<T> {
 
     /// The bed as the stage finds it.
     fn begin(&self, world: &mut World, context: &Context) -> Result<Run<T::Solver>, ProcessError> {
+        self.params.meets(world).map_err(ProcessError::Unfit)?;
         let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
         let bed = self.bed(world, mask);
         let solver = self.params.solver(&bed, world, context.key)?;
+        if let Some(clocks) = self.params.clocks() {
+            world.ledger.set_clocks(context.stage, clocks);
+        }
         let found_m3 = water_m3(world);
         for &layer in T::PEAKS {
             world.remove_layer(layer);

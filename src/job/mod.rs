@@ -136,7 +136,7 @@ impl JobError {
     pub fn refused(&self) -> bool {
         match self {
             JobError::Recipe(_) | JobError::Refused(_) => true,
-            JobError::Timeline(TimelineError::Past(_)) => true,
+            JobError::Timeline(TimelineError::Past(_) | TimelineError::Process { unfit: true, .. }) => true,
             JobError::Timeline(TimelineError::Checkpoint(error)) => matches!(error, CheckpointError::Foreign { .. }),
             JobError::Export(ExportError::FilmRequest(_)) => true,
             JobError::Store(error) => matches!(error, StoreError::Absent(_)),

@@ -1,13 +1,13 @@
 //! The report of `upthrust inspect`.
 
-use std::fmt;
+use std::{collections::BTreeMap, fmt};
 
 use serde::Serialize;
 
 use super::{Hypsometry, LayerStats, Slopes, hypsometry, layer_stats, slopes};
 use crate::{
     grid::{Edges, sum_f64},
-    world::{Layer, Matter, World},
+    world::{Clocks, Layer, Matter, World},
 };
 
 /// One account of the ledger, with what it cannot explain.
@@ -68,6 +68,9 @@ pub struct Inspection {
     pub layers: Vec<LayerStats>,
     /// Every account.
     pub ledger: Vec<Books>,
+    /// How the clocks of stages go in which water runs in its own time.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub clocks: BTreeMap<String, Clocks>,
 }
 
 /// Measures a world.
@@ -95,6 +98,7 @@ pub fn inspect(world: &World) -> Inspection {
         land_slopes: slopes(&height, sea),
         layers,
         ledger: books(world),
+        clocks: world.ledger.all_clocks().map(|(stage, clocks)| (stage.to_owned(), clocks)).collect(),
     }
 }
 
@@ -177,6 +181,10 @@ impl Inspection {
                 Some(share) => writeln!(f, "{share:>10.1e}")?,
                 None => writeln!(f, "{:>10}", "unbooked")?,
             }
+        }
+        for (stage, Clocks { water_s, morphological_factor }) in &self.clocks {
+            let hours = short(water_s / 3600.0);
+            writeln!(f, "{stage:<24} {hours:>12} h of water, {} times that of its bed", short(*morphological_factor))?;
         }
         Ok(())
     }

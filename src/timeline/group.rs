@@ -7,7 +7,7 @@ use crate::{
     bake::Tape,
     process::{Context, Process, ProcessError, State, Step},
     recipe::Stage,
-    world::{Layer, Matter, World},
+    world::{Layer, Ledger, Matter, World},
 };
 
 use super::StageRecord;
@@ -128,8 +128,8 @@ impl<'a> Group<'a> {
         Ok(())
     }
 
-    /// What they cost: `seconds` in all, of which each that follows knows its own.
-    pub fn records(&self, steps: u64, seconds: f64, elapsed_yr: f64) -> Vec<StageRecord> {
+    /// What they cost: `seconds` in all, of which each that follows knows its own; `ledger` knows their clocks.
+    pub fn records(&self, steps: u64, seconds: f64, elapsed_yr: f64, ledger: &Ledger) -> Vec<StageRecord> {
         let following: f64 = self.members[1..].iter().map(|member| member.seconds).sum();
         let record = |(at, member): (usize, &Member)| StageRecord {
             stage: member.stage.key.clone(),
@@ -137,6 +137,7 @@ impl<'a> Group<'a> {
             steps,
             seconds: if at == 0 { (seconds - following).max(0.0) } else { member.seconds },
             elapsed_yr,
+            clocks: ledger.clocks(&member.stage.key),
             findings: member.process.findings(),
         };
         self.members.iter().enumerate().map(record).collect()

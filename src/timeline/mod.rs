@@ -10,7 +10,10 @@ mod run;
 pub use checkpoint::{Checkpoint, CheckpointError, Checkpoints, EVERY};
 pub use run::{Timeline, TimelineError};
 
-use crate::{bake::Tape, world::World};
+use crate::{
+    bake::Tape,
+    world::{Clocks, World},
+};
 
 /// Where a run is.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,6 +96,9 @@ pub struct StageRecord {
     pub seconds: f64,
     /// Years that passed in the world.
     pub elapsed_yr: f64,
+    /// How its water's clock and its bed's went, where it has two.
+    #[serde(flatten)]
+    pub clocks: Option<Clocks>,
     /// What a person should know of what it met.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub findings: Vec<String>,

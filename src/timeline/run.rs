@@ -29,6 +29,8 @@ pub enum TimelineError {
         step: u64,
         /// In the stage's own words.
         why: String,
+        /// Whether what was asked for is wrong, rather than the run.
+        unfit: bool,
     },
     /// A value is no number any more.
     #[error(
@@ -182,7 +184,7 @@ impl<'a> Timeline<'a> {
         group.close(world);
         watch.tell(at.step, 1.0, world);
         let seconds = before + started.elapsed().as_secs_f64();
-        Ok(group.records(at.step, seconds, world.time_yr - at.began_yr))
+        Ok(group.records(at.step, seconds, world.time_yr - at.began_yr, &world.ledger))
     }
 
     /// Keeps a checkpoint, where there is anything yet to be kept.
@@ -201,7 +203,10 @@ impl<'a> Timeline<'a> {
 fn stopped(step: u64, Failure { stage, why }: Failure) -> TimelineError {
     match why {
         ProcessError::Cancelled => TimelineError::Cancelled,
-        why => TimelineError::Process { stage: stage.label.clone(), step, why: why.to_string() },
+        why => {
+            let unfit = matches!(why, ProcessError::Unfit(_) | ProcessError::Mask(_));
+            TimelineError::Process { stage: stage.label.clone(), step, why: why.to_string(), unfit }
+        }
     }
 }
 

@@ -139,6 +139,10 @@ catalogue! {
     Flow: "flow", "Flow of storm water", "m3/s", [0.0, 50.0], Flow, Kind::Continuous;
     /// Greatest speed of that water.
     FlowSpeed: "flow_speed", "Speed of storm water", "m/s", [0.0, 10.0], Sequential, Kind::Continuous;
+    /// Velocity of that water to the east, at its greatest speed.
+    FlowEast: "flow_east", "Velocity of storm water to the east", "m/s", [-5.0, 5.0], Diverging, Kind::Continuous;
+    /// Velocity of that water to the south, at its greatest speed.
+    FlowSouth: "flow_south", "Velocity of storm water to the south", "m/s", [-5.0, 5.0], Diverging, Kind::Continuous;
     /// Rock on its way in the water, as a layer of that thickness.
     Suspended: "suspended", "Sediment in the water", "m", [0.0, 0.1], Sequential, Kind::Continuous;
     /// Depth of lava that flows.

@@ -47,13 +47,38 @@ impl Account {
     }
 }
 
-/// The accounts of all stages.
+/// The two clocks of a stage in which water runs in its own time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Clocks {
+    /// How long its water runs, s.
+    pub water_s: f64,
+    /// The bed's time over the water's.
+    pub morphological_factor: f64,
+}
+
+/// The accounts of all stages, and the clocks of those that have two.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
     accounts: BTreeMap<(String, Matter), Account>,
+    clocks: BTreeMap<String, Clocks>,
 }
 
 impl Ledger {
+    /// Notes how the clocks of `stage` go.
+    pub fn set_clocks(&mut self, stage: &str, clocks: Clocks) {
+        self.clocks.insert(stage.to_owned(), clocks);
+    }
+
+    /// How the clocks of `stage` go, if it has two.
+    pub fn clocks(&self, stage: &str) -> Option<Clocks> {
+        self.clocks.get(stage).copied()
+    }
+
+    /// All stages with two clocks.
+    pub fn all_clocks(&self) -> impl Iterator<Item = (&str, Clocks)> {
+        self.clocks.iter().map(|(stage, clocks)| (stage.as_str(), *clocks))
+    }
+
     /// Adds to what came in during `stage`.
     pub fn book_in(&mut self, stage: &str, matter: Matter, m3: f64) {
         self.account_mut(stage, matter).came_in_m3 += m3;

@@ -14,7 +14,7 @@ mod vents;
 
 pub use catalogue::{Kind, Layer, Palette, Spec};
 pub use forcing::Inflow;
-pub use ledger::{Account, Ledger, Matter};
+pub use ledger::{Account, Clocks, Ledger, Matter};
 pub use mask::{Mask, MaskError};
 pub use picture::{PictureError, open_picture, sample};
 pub use plumes::{Plume, Puff};

@@ -141,7 +141,7 @@ fn a_run_that_fails_leaves_nothing() {
     let last = said.err.lines().last().unwrap();
     let what = "error: stage 'plates', step 1: plate 2: at_km = [100, 100] lies on a plate that an earlier entry has";
     assert!(last.starts_with(what), "{}", said.err);
-    assert_eq!(said.code, 1);
+    assert_eq!(said.code, 2);
     assert_eq!(place.files(), ["twice.toml"]);
 }
 

@@ -43,6 +43,36 @@ fn a_folder_holds_the_world_and_its_numbers() {
 }
 
 #[test]
+fn the_clocks_of_water_and_land_are_booked() {
+    let place = Place::new();
+    let water = "[world]\nsize = 32\nextent_km = 0.32\n[[stage]]\nkind = 'fbm'\nheight_m = 40\nwavelength_km = 0.2\n";
+    let stages = [
+        ("droplets", "duration_yr = 20.0\nmorphological_factor = 50.0", 20.0 * 31_557_600.0, 50.0),
+        ("pipes", "duration_h = 0.1\nmorphological_factor = 8766.0e-1", 360.0, 876.6),
+        ("hydraulic_cells", "duration_h = 0.5\nmorphological_factor = 1e4", 1800.0, 1e4),
+    ];
+    let set: String = stages.iter().map(|(kind, set, ..)| format!("[[stage]]\nkind = '{kind}'\n{set}\n")).collect();
+    place.write("storms.toml", format!("{water}{set}"));
+    let said = place.run(&["grow", "storms.toml", "--out", "w"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let clock = "note: stage 'droplets': 20 years of water stand for 1000 years of land (morphological_factor = 50)";
+    assert!(said.err.contains(clock), "{}", said.err);
+    let manifest = manifest(&place, "w");
+    assert!(manifest["stages"][0].get("water_s").is_none(), "no water runs in {}", manifest["stages"][0]);
+    let inspected = place.run(&["inspect", "w"]).out;
+    for (k, (kind, _, water_s, factor)) in stages.into_iter().enumerate() {
+        let stage = &manifest["stages"][k + 1];
+        let near = |key: &str, want: f64| (stage[key].as_f64().unwrap() / want - 1.0).abs() < 1e-12;
+        assert!(near("water_s", water_s) && near("morphological_factor", factor), "{stage}");
+        // A clock that stands at 2,000 years is moved on a hundred times, and rounds to 2e-13 each time.
+        let elapsed_yr = water_s * factor / 31_557_600.0;
+        assert!((stage["elapsed_yr"].as_f64().unwrap() - elapsed_yr).abs() < 1e-10, "{stage}");
+        // The store keeps them too.
+        assert!(inspected.contains(&format!("h of water, {factor} times that of its bed")), "{kind}: {inspected}");
+    }
+}
+
+#[test]
 fn the_same_world_for_any_number_of_threads() {
     let place = Place::new();
     let hashes = |threads: &str| {
@@ -94,7 +124,7 @@ fn a_failed_force_keeps_the_old_world() {
     let before = manifest(&place, "w");
     let entry = "[[stage.plate]]\nat_km = [100, 100]\nheading_deg = 0\nspeed_mm_per_yr = 1\n";
     place.write("twice.toml", format!("[world]\nsize = 16\n[[stage]]\nkind = \"plates\"\n{entry}{entry}"));
-    assert_eq!(place.run(&["grow", "twice.toml", "--out", "w", "--force"]).code, 1);
+    assert_eq!(place.run(&["grow", "twice.toml", "--out", "w", "--force"]).code, 2);
     assert_eq!(manifest(&place, "w"), before);
     assert_eq!(std::fs::read_dir(place.folder.path()).unwrap().count(), 2);
 }

@@ -94,6 +94,23 @@ fn what_had_no_height_is_counted() {
 }
 
 #[test]
+fn what_a_file_says_to_be_infinite_is_named() {
+    let place = Place::new();
+    let heights = (0..20 * 20).map(|i| if i < 3 { [f32::INFINITY, f32::NEG_INFINITY, f32::NAN][i] } else { i as f32 });
+    place.write("a.r32", heights.flat_map(f32::to_le_bytes).collect::<Vec<u8>>());
+    place.write("a.toml", "[[stage]]\nkind = \"import\"\npath = \"a.r32\"\nlow_m = 0.0\nhigh_m = 1.0\n");
+    let said = place.run(&["grow", "a.toml", "--out", "w"]);
+    let note = "3 of 400 cells (0.75 %) had no height, 2 of them infinite, and were filled in (no_data)";
+    assert!(said.code == 0 && said.err.contains(note), "{}", said.err);
+    // Holes that are not wanted are a wrong request, though only the run finds them.
+    let said = place.run(&["grow", "a.toml", "--set", "import.no_data=refuse", "--out", "v"]);
+    let last = said.err.lines().last().unwrap();
+    let what = "a.r32: 3 cells have no height, the first at 0, 0; no_data = \"fill\" fills them from their neighbours";
+    assert!(last.starts_with("error: stage 'import', step 1: ") && last.ends_with(what), "{}", said.err);
+    assert_eq!((said.code, place.path("v").exists()), (2, false));
+}
+
+#[test]
 fn bad_files_are_refused_where_the_recipe_names_them() {
     let place = Place::new();
     place.write("mine.toml", "\n[[stage]]\nkind = \"import\"\npath = \"mine.png\"\n");

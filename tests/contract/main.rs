@@ -2,6 +2,8 @@
 //! gives the same bits when it is stopped, saved and continued, ends with finite heights and with closed books. And what
 //! comes from outside (`hostile`) is refused in one line.
 
+mod sampled;
+
 use std::{path::PathBuf, sync::atomic::AtomicBool};
 
 use upthrust::{

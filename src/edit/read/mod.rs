@@ -95,6 +95,8 @@ pub struct Heightmap {
     pub heights: Vec<f32>,
     /// How many of them the file did not say.
     pub filled: usize,
+    /// How many of these it said to be infinite.
+    pub infinite: usize,
     /// Distance of two heights that the file can tell apart, m; 0 where it stores fractions.
     pub step_m: f32,
 }
@@ -113,9 +115,11 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// The height of a value; `NaN` where it stands for none.
+    /// The height of a value; `NaN` where it stands for none. What is infinite stays so: the file says it by mistake.
     pub fn height(&self, value: f64) -> f32 {
-        if value.is_finite() && value > NO_HEIGHT {
+        if value.is_infinite() {
+            value as f32
+        } else if value.is_finite() && value > NO_HEIGHT {
             (self.low_m + (value - self.black) * self.per_value_m) as f32
         } else {
             f32::NAN
@@ -197,14 +201,24 @@ pub(super) fn heights(
         return Err(Problem::Truncated);
     }
     let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-    for &v in heights.iter().filter(|v| !v.is_nan()) {
+    for &v in heights.iter().filter(|v| v.is_finite()) {
         (low, high) = (low.min(v), high.max(v));
     }
+    // Of heights that land can have, some overflow in single precision as well.
+    let infinite = heights.iter().filter(|v| v.is_infinite()).count();
+    heights.iter_mut().filter(|v| v.is_infinite()).for_each(|v| *v = f32::NAN);
     if low < -ABSURD_M || high > ABSURD_M {
         return Err(Problem::Absurd(low, high));
     }
     heights.shrink_to_fit();
-    Ok(Heightmap { width: header.width, height: header.height, heights, filled: 0, step_m: scale.step_m as f32 })
+    Ok(Heightmap {
+        width: header.width,
+        height: header.height,
+        heights,
+        filled: 0,
+        infinite,
+        step_m: scale.step_m as f32,
+    })
 }
 
 fn rewind(source: &mut Source) -> Result<(), Problem> {

@@ -2,7 +2,8 @@
 //! slow (after Beyer 2015), in metres and years.
 //!
 //! A droplet stands for the rain of the stage on its share of the map, so that the number of droplets smooths the
-//! result but does not deepen it, and the world's clock goes on by the years in which that rain falls.
+//! result but does not deepen it. `morphological_factor` says how many years of land each of its years of rain stands
+//! for: a droplet then carries as many times the rock, and the world's clock goes on by as many times the years.
 //!
 //! Its speed is `v² = (v² + 2·g·drop) / (1 + drag·step)`; it carries `capacity·water·sine of the slope·v`, and nears
 //! that over a distance, so that cells of another size give the same valleys. No droplet digs below the next place of

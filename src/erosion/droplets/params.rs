@@ -28,6 +28,12 @@ pub struct DropletsParams {
         extend("x-unit" = "mm/yr", "x-effect" = "deeper gullies in the same time")
     )]
     pub rain_mm_per_yr: f64,
+    /// Years of land that each year of rain stands for: it multiplies what droplets wear, carry and lay down.
+    #[schemars(
+        range(min = 0.0, max = 100000.0),
+        extend("x-unit" = "", "x-effect" = "deeper gullies from the same water")
+    )]
+    pub morphological_factor: f64,
     /// Droplets that the rain is parted into.
     #[schemars(range(min = 0.001, max = 100.0), extend("x-unit" = "1/cell", "x-effect" = "smoother valleys, slower"))]
     pub droplets_per_cell: f64,
@@ -71,6 +77,7 @@ impl Default for DropletsParams {
         Self {
             duration_yr: 10_000.0,
             rain_mm_per_yr: 1000.0,
+            morphological_factor: 1.0,
             droplets_per_cell: 1.0,
             path_m: 1500.0,
             radius_m: 16.0,
@@ -114,7 +121,7 @@ impl DropletsParams {
 
     /// By how much the world's clock goes on, yr.
     pub fn elapsed_yr(&self) -> f64 {
-        self.duration_yr
+        self.duration_yr * self.morphological_factor
     }
 
     /// Rain in all, m.
@@ -135,7 +142,7 @@ impl DropletsParams {
             kept_way: if self.turning_m > 0.0 { libm::exp(-step_m / self.turning_m) as f32 } else { 0.0 },
             twice_gravity: (2.0 * self.gravity_m_per_s2) as f32,
             slowed: (1.0 / (1.0 + self.drag_per_m * step_m)) as f32,
-            capacity: (self.capacity * depth_m) as f32,
+            capacity: (self.capacity * self.morphological_factor * depth_m) as f32,
             least_sine: (self.least_slope / (1.0 + self.least_slope * self.least_slope).sqrt()) as f32,
             taken: within(self.erosion_m),
             laid: within(self.deposition_m),

@@ -1,15 +1,15 @@
 //! The stage `droplets`.
 
-use super::{Droplets, DropletsParams};
+use super::{Droplets, DropletsParams, YEAR_S};
 use crate::{
     erosion::{
         bed::Bed,
-        stage::{FamilyParams, Lock, Stage, cell_size},
+        stage::{FamilyParams, Lock, Stage, cell_size, in_words},
     },
     grid::{Field, Grid},
     noise::Key,
     process::{Placement, Process, ProcessError},
-    world::{Layer, World},
+    world::{Clocks, Layer, World},
 };
 
 impl DropletsParams {
@@ -32,7 +32,11 @@ impl FamilyParams for DropletsParams {
     }
 
     fn duration_yr(&self) -> f64 {
-        self.duration_yr
+        self.elapsed_yr()
+    }
+
+    fn clocks(&self) -> Option<Clocks> {
+        Some(Clocks { water_s: YEAR_S * self.duration_yr, morphological_factor: self.morphological_factor })
     }
 
     fn check(&self, grid: &Grid) -> Result<(), String> {
@@ -40,12 +44,11 @@ impl FamilyParams for DropletsParams {
     }
 
     fn remarks(&self, grid: &Grid) -> Vec<String> {
-        // No factor between two clocks: a droplet stands for years of rain, whatever they are.
-        let clock = format!(
-            "{} years of {} mm of rain, {} droplets a cell; each stands for its share of all that rain",
-            self.duration_yr, self.rain_mm_per_yr, self.droplets_per_cell
+        let rain = format!(
+            "{} mm of rain a year, {} droplets a cell; each stands for its share of all that rain",
+            self.rain_mm_per_yr, self.droplets_per_cell
         );
-        cell_size(grid, 1.0, 100.0).into_iter().chain([clock]).collect()
+        cell_size(grid, 1.0, 100.0).into_iter().chain(self.clocks().map(in_words)).chain([rain]).collect()
     }
 
     fn solver(&self, bed: &Bed, _world: &World, key: Key) -> Result<Droplets, ProcessError> {

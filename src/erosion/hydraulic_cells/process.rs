@@ -4,12 +4,12 @@ use super::{HydraulicCells, HydraulicCellsParams};
 use crate::{
     erosion::{
         bed::Bed,
-        stage::{FamilyParams, Lock, Stage, cell_size, clocks, peak},
+        stage::{FamilyParams, Lock, Stage, cell_size, in_words, peak},
     },
     grid::{Field, Grid},
     noise::Key,
     process::{Placement, Process, ProcessError},
-    world::{Layer, World},
+    world::{Clocks, Layer, World},
 };
 
 impl HydraulicCellsParams {
@@ -35,13 +35,16 @@ impl FamilyParams for HydraulicCellsParams {
         self.elapsed_yr()
     }
 
+    fn clocks(&self) -> Option<Clocks> {
+        Some(Clocks { water_s: 3600.0 * self.duration_h, morphological_factor: self.morphological_factor })
+    }
+
     fn check(&self, grid: &Grid) -> Result<(), String> {
         HydraulicCellsParams::check(self, grid)
     }
 
     fn remarks(&self, grid: &Grid) -> Vec<String> {
-        let clocks = clocks(self.duration_h, self.elapsed_yr(), self.morphological_factor);
-        cell_size(grid, 1.0, 1000.0).into_iter().chain([clocks]).collect()
+        cell_size(grid, 1.0, 1000.0).into_iter().chain(self.clocks().map(in_words)).collect()
     }
 
     fn solver(&self, bed: &Bed, world: &World, _key: Key) -> Result<HydraulicCells, ProcessError> {

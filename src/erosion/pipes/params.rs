@@ -3,10 +3,17 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::{erosion::stage::Lock, grid::Grid};
+use crate::{
+    erosion::stage::Lock,
+    grid::{Edges, Grid},
+};
 
 /// More steps than anyone waits for.
 const MOST_STEPS: f64 = 1e6;
+/// Cells that two cores do in a minute, about.
+const CELLS_PER_MIN: f64 = 1e10;
+/// Depth of water that steps are counted for before anything is known of it, m.
+const METRE: f64 = 1.0;
 /// Gravity, m/s².
 const GRAVITY: f64 = 9.81;
 
@@ -201,18 +208,7 @@ impl PipesParams {
                 self.deep_m, self.shallow_m
             ));
         }
-        // Steps in water of a metre; lakes need more.
-        let step_s = 0.64 * grid.cell_m / GRAVITY.sqrt();
-        let steps = 3600.0 * self.duration_h / step_s;
-        if steps > MOST_STEPS {
-            return Err(format!(
-                "{} h on cells of {} m are {steps:.1e} steps of water; lower duration_h to {:.3} and raise \
-                 morphological_factor instead",
-                self.duration_h,
-                grid.cell_m,
-                self.duration_h * MOST_STEPS / steps
-            ));
-        }
+        self.check_depth(grid, METRE)?;
         for (i, spring) in self.springs.iter().enumerate() {
             let steps = self.steps_of(spring, grid.cell_m);
             if steps > MOST_STEPS {
@@ -235,6 +231,55 @@ impl PipesParams {
             }
         }
         Ok(())
+    }
+
+    /// Whether it ends in a time that anyone waits for, with water of a depth; if not, what would help.
+    pub(super) fn check_depth(&self, grid: &Grid, depth_m: f64) -> Result<(), String> {
+        let steps = self.steps_in(grid, depth_m);
+        if steps <= MOST_STEPS {
+            return Ok(());
+        }
+        Err(format!(
+            "{} h of water {depth_m:.3} m deep on cells of {} m are {steps:.1e} steps of it; lower duration_h to {:.3} and \
+             raise morphological_factor instead",
+            self.duration_h,
+            grid.cell_m,
+            self.duration_h * MOST_STEPS / steps
+        ))
+    }
+
+    /// What to know of a run that takes long.
+    pub(super) fn patience(&self, grid: &Grid) -> Option<String> {
+        let steps = self.sub_steps(grid);
+        let minutes = steps * grid.cells() as f64 / CELLS_PER_MIN;
+        (minutes >= 1.0).then(|| {
+            format!(
+                "about {steps:.0} steps of water, some {minutes:.0} min on two cores; lakes deeper than a metre take more, \
+                 by the root of their depth"
+            )
+        })
+    }
+
+    /// Steps of water that it takes, about: in water of a metre, at springs as deep as these make it, and within a rim that
+    /// keeps all of it in water as deep as that.
+    pub fn sub_steps(&self, grid: &Grid) -> f64 {
+        let springs = self.springs.iter().map(|spring| self.steps_of(spring, grid.cell_m));
+        let kept = if grid.edges == Edges::Open { 0.0 } else { self.depth_kept(grid) };
+        springs.fold(self.steps_in(grid, METRE.max(kept)), f64::max)
+    }
+
+    /// Depth of water that takes as many steps as what rises evenly to where all of it stands on the map, m.
+    pub(super) fn depth_kept(&self, grid: &Grid) -> f64 {
+        let area = grid.cell_area_m2() * grid.cells() as f64;
+        let springs: f64 = self.springs.iter().map(|spring| spring.flow_m3_per_s).sum();
+        let rise = 1e-3 / 3600.0 * self.rain_mm_per_h + springs / area;
+        // The mean of the root of a depth that rises to 1 is 2/3.
+        4.0 / 9.0 * rise * 3600.0 * self.duration_h * (1.0 - self.recession)
+    }
+
+    /// Steps in water of a depth, by the speed of its waves.
+    fn steps_in(&self, grid: &Grid, depth_m: f64) -> f64 {
+        3600.0 * self.duration_h * (GRAVITY * depth_m).sqrt() / (0.64 * grid.cell_m)
     }
 
     /// Steps that a spring asks for, about: its water rises until it runs off to all sides as fast as waves.

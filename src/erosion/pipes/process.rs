@@ -4,12 +4,12 @@ use super::{Pipes, PipesParams};
 use crate::{
     erosion::{
         bed::Bed,
-        stage::{FamilyParams, Lock, Stage, cell_size, clocks, peak},
+        stage::{FamilyParams, Lock, Stage, cell_size, in_words, peak},
     },
-    grid::{Field, Grid, sum_f64},
+    grid::{Edges, Field, Grid, for_each_row, sum_f64},
     noise::Key,
     process::{Placement, Process, ProcessError},
-    world::{Layer, World},
+    world::{Clocks, Layer, World},
 };
 
 /// Hours in a year.
@@ -33,9 +33,11 @@ impl FamilyParams for PipesParams {
         Layer::Deposit,
         Layer::Flow,
         Layer::FlowSpeed,
+        Layer::FlowEast,
+        Layer::FlowSouth,
         Layer::Suspended,
     ];
-    const PEAKS: &'static [Layer] = &[Layer::Flow, Layer::FlowSpeed];
+    const PEAKS: &'static [Layer] = &[Layer::Flow, Layer::FlowSpeed, Layer::FlowEast, Layer::FlowSouth];
     const WATER: bool = true;
     const STEPS: u64 = 100;
 
@@ -47,13 +49,25 @@ impl FamilyParams for PipesParams {
         self.duration_h * self.morphological_factor / YEAR_H
     }
 
+    fn clocks(&self) -> Option<Clocks> {
+        Some(Clocks { water_s: 3600.0 * self.duration_h, morphological_factor: self.morphological_factor })
+    }
+
     fn check(&self, grid: &Grid) -> Result<(), String> {
         PipesParams::check(self, grid)
     }
 
+    fn meets(&self, world: &World) -> Result<(), String> {
+        let deepest = world.layer(Layer::Water).and_then(Field::range).map_or(0.0, |(_, most)| f64::from(most));
+        self.check_depth(&world.grid, deepest)?;
+        let sea = || world.height().data.iter().any(|&z| f64::from(z) < world.sea_level_m);
+        // Nothing takes the water: it rises for as long as it rains and springs run.
+        let rises = world.grid.edges != Edges::Open && !(self.sea && sea());
+        if rises { self.check_depth(&world.grid, self.depth_kept(&world.grid)) } else { Ok(()) }
+    }
+
     fn remarks(&self, grid: &Grid) -> Vec<String> {
-        let clocks = clocks(self.duration_h, self.duration_yr(), self.morphological_factor);
-        cell_size(grid, 1.0, 100.0).into_iter().chain([clocks]).collect()
+        cell_size(grid, 1.0, 100.0).into_iter().chain(self.clocks().map(in_words)).chain(self.patience(grid)).collect()
     }
 
     fn solver(&self, bed: &Bed, world: &World, _key: Key) -> Result<Pipes, ProcessError> {
@@ -75,6 +89,23 @@ impl FamilyParams for PipesParams {
         world.set_layer(Layer::Water, Field { grid, data: solver.water_m(bed) });
         world.set_layer(Layer::Suspended, Field { grid, data: solver.suspended_m().to_vec() });
         peak(world, Layer::Flow, &solver.discharge());
-        peak(world, Layer::FlowSpeed, &solver.speed());
+        show_velocity(solver, world);
     }
+}
+
+/// Notes speed and velocity wherever water is faster than it has been.
+fn show_velocity(solver: &Pipes, world: &mut World) {
+    let (grid, speed) = (world.grid, solver.speed());
+    let before = world.remove_layer(Layer::FlowSpeed).unwrap_or_else(|| Field::filled(grid, 0.0));
+    for (axis, layer) in [Layer::FlowEast, Layer::FlowSouth].into_iter().enumerate() {
+        let velocity = solver.velocity(axis);
+        for_each_row(&mut world.layer_mut(layer).data, grid.width, |y, row| {
+            for (x, kept) in row.iter_mut().enumerate() {
+                let i = y * grid.width + x;
+                *kept = if speed[i] > before.data[i] { velocity[i] } else { *kept };
+            }
+        });
+    }
+    world.set_layer(Layer::FlowSpeed, before);
+    peak(world, Layer::FlowSpeed, &speed);
 }

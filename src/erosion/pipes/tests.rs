@@ -4,6 +4,7 @@ mod books;
 mod calm;
 mod held;
 mod same;
+mod staged;
 mod traced;
 mod waves;
 

@@ -5,12 +5,12 @@ use crate::{
     bake::{Column, Subject},
     erosion::{
         bed::Bed,
-        stage::{FamilyParams, Lock, Stage, clocks, peak},
+        stage::{FamilyParams, Lock, Stage, in_words, peak},
     },
     grid::Grid,
     noise::Key,
     process::{Placement, Process, ProcessError},
-    world::{Layer, World},
+    world::{Clocks, Layer, World},
 };
 
 /// Minutes in a year.
@@ -39,13 +39,16 @@ impl FamilyParams for RainParticlesParams {
         self.duration_min * self.morphological_factor / YEAR_MIN
     }
 
+    fn clocks(&self) -> Option<Clocks> {
+        Some(Clocks { water_s: self.duration_s(), morphological_factor: self.morphological_factor })
+    }
+
     fn check(&self, grid: &Grid) -> Result<(), String> {
         RainParticlesParams::check(self, grid)
     }
 
     fn remarks(&self, grid: &Grid) -> Vec<String> {
-        let clocks = clocks(self.duration_min / 60.0, self.duration_yr(), self.morphological_factor);
-        self.warning(grid).into_iter().chain([clocks]).collect()
+        self.warning(grid).into_iter().chain(self.clocks().map(in_words)).collect()
     }
 
     fn subject(&self, grid: &Grid) -> Option<Subject> {

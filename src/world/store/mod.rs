@@ -123,7 +123,7 @@ mod tests {
     use super::*;
     use crate::{
         grid::{Edges, Field, Grid},
-        world::{Layer, Matter, Table, World},
+        world::{Clocks, Layer, Matter, Table, World},
     };
 
     fn sample(width: usize, height: usize) -> (World, Provenance) {
@@ -146,6 +146,7 @@ mod tests {
         world.ledger.book_in("plates", Matter::Rock, 1e17 / 7.0);
         world.ledger.book_out("plates", Matter::Crust, 0.1);
         world.ledger.close("plates", Matter::Rock, 2.0 / 3.0);
+        world.ledger.set_clocks("storm", Clocks { water_s: 1e4 / 3.0, morphological_factor: 0.1 });
         let provenance = Provenance {
             name: "Test".into(),
             recipe: "seed = 1\n# \"ü\"\n".into(),

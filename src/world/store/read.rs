@@ -1,6 +1,10 @@
 //! Reading a world.
 
-use std::{path::Path, path::PathBuf, sync::Arc};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use rayon::prelude::*;
 use serde::{Deserialize, de::DeserializeOwned};
@@ -14,7 +18,7 @@ use zarrs::{
 use super::{FORMAT, FORMAT_VERSION, Provenance, StoreError, locate};
 use crate::{
     grid::{Edges, Field, Grid},
-    world::{Account, Column, Layer, Ledger, Matter, Table, Values, World},
+    world::{Account, Clocks, Column, Layer, Ledger, Matter, Table, Values, World},
 };
 
 /// More cells than any world has; a damaged size must not ask for all memory.
@@ -112,6 +116,11 @@ impl Reader {
             ledger.book_in(&stage, matter, account.came_in_m3);
             ledger.book_out(&stage, matter, account.left_m3);
             ledger.close(&stage, matter, account.end_m3);
+        }
+        // Stores that were written before there were any lack them.
+        if attributes.contains_key("clocks") {
+            let clocks: BTreeMap<String, Clocks> = self.get(attributes, "clocks")?;
+            clocks.into_iter().for_each(|(stage, clocks)| ledger.set_clocks(&stage, clocks));
         }
         Ok(ledger)
     }

@@ -238,6 +238,8 @@ impl Writer {
             .accounts()
             .map(|(stage, matter, account)| json!({ "stage": stage, "matter": matter, "account": account }))
             .collect();
+        let clocks: Map<String, Value> =
+            world.ledger.all_clocks().map(|(stage, clocks)| (stage.to_owned(), json!(clocks))).collect();
         let root = json!({
             "zarr_format": 3,
             "node_type": "group",
@@ -256,6 +258,7 @@ impl Writer {
                 "layers": world.layers().map(|(layer, _)| layer.name()).collect::<Vec<_>>(),
                 "tables": world.tables().map(|table| table.name.as_str()).collect::<Vec<_>>(),
                 "ledger": ledger,
+                "clocks": clocks,
             },
             "consolidated_metadata": { "kind": "inline", "must_understand": false, "metadata": self.nodes },
         });
