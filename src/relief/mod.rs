@@ -28,6 +28,7 @@ mod text;
 mod tint;
 
 pub use cover::LAYERS as CLIMATE;
+pub use lava::LAYERS as LAVA;
 pub use sheet::contact_sheet;
 
 use image::RgbImage;
