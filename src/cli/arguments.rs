@@ -212,7 +212,7 @@ pub(crate) struct RawExport {
     /// The moment of a recording, since its stage began; of smoke, since the first left a vent [default: the last]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub at: Option<String>,
-    /// A file for every so many seconds, numbered at the #s of its name, from --at or the beginning to the end (.ply .csv)
+    /// A new folder of files, such as points/%05d.ply, one for every so many seconds from --at or the beginning to the end
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub every: Option<String>,
     /// Replace files that exist

@@ -157,26 +157,32 @@ fn what_cannot_be_baked_is_said_before_anything_is_begun() {
 fn a_series_of_moments_is_numbered_and_each_is_that_moment() {
     let place = place();
     assert_eq!(bake(&place, "w", &["--bake-rate", "20"]).code, 0);
-    std::fs::create_dir(place.path("frames")).unwrap();
-    let said = place.run(&["export", "w/lava.upbake", "frames/p_###.ply", "--every", "0.75"]);
-    let want: String = (1..=5).map(|k| format!("frames/p_00{k}.ply\n")).collect();
-    assert_eq!((said.code, said.out), (0, want), "{}", said.err);
+    let said = place.run(&["export", "w/lava.upbake", "frames/p_%03d.ply", "--every", "0.75"]);
+    let note = "note: 5 files, from 0 to 3 s\n";
+    assert_eq!((said.code, said.out.as_str(), said.err.as_str()), (0, "frames\n", note));
+    assert_eq!(std::fs::read_dir(place.path("frames")).unwrap().count(), 5);
     assert_eq!(place.run(&["export", "w/lava.upbake", "one.ply", "--at", "1.5"]).code, 0);
     assert!(bytes(&place, "frames/p_003.ply") == bytes(&place, "one.ply"));
-    let said = place.run(&["export", "w/lava.upbake", "frames/p.csv", "--every", "1", "--at", "2"]);
-    assert_eq!(said.out, "frames/p_00001.csv\nframes/p_00002.csv\n", "{}", said.err);
+    let said = place.run(&["export", "w/lava.upbake", "late/%05d.csv", "--every", "1", "--at", "2"]);
+    assert_eq!((said.code, said.err.as_str()), (0, "note: 2 files, from 2 to 3 s\n"));
     let refused = |arguments: &[&str], what: &str| {
         let said = place.run(&[&["export", "w/lava.upbake"], arguments].concat());
         assert_eq!((said.code, said.err), (2, format!("error: {what}\n")), "{arguments:?}");
     };
-    let there = "frames/p_001.ply: exists; choose another name, or replace it with --force";
-    refused(&["frames/p_###.ply", "--every", "1"], there);
-    refused(&["none/p.ply", "--every", "1"], "none/p_00001.ply: there is no folder 'none'");
-    let many = "--every 0.00001: that would be 300001 files, 99999 at most; take 3.0e-5 s or more";
-    refused(&["p.ply", "--every", "0.00001"], many);
+    let full = "frames: this folder has something in it; name a new one for the files";
+    refused(&["frames/%d.ply", "--every", "1"], full);
+    for bare in ["new/p.ply", "%05d.ply"] {
+        let what = format!("{bare}: name a new folder and number the files in it, as in points/%05d.ply");
+        refused(&[bare, "--every", "1"], &what);
+    }
+    let many = "--every 0.00001: that would be 300001 files, 100000 at most; take 3.0e-5 s or more";
+    refused(&["new/%05d.ply", "--every", "0.00001"], many);
+    let outside = "w/lava.upbake: there is no moment 3.5 s: it lasts from 0 to 3 s";
+    refused(&["new/%05d.ply", "--every", "1", "--at", "3.5"], outside);
+    assert!(!place.path("new").exists());
     for every in ["0", "-1", "x", "inf"] {
         let what = format!("--every {every}: must be a number of seconds above 0, such as 0.04");
-        refused(&["p.ply", "--every", every], &what);
+        refused(&["new/%05d.ply", "--every", every], &what);
     }
 }
 
@@ -192,14 +198,14 @@ fn smoke_is_exported_as_points() {
     assert_eq!(text.lines().count(), 1 + 7, "{text}");
     let ages: Vec<f64> = text.lines().skip(1).map(|line| line.split(',').nth(6).unwrap().parse().unwrap()).collect();
     assert!(ages.iter().all(|age| (0.99..=3.01).contains(age)), "{ages:?}");
-    let said = place.run(&["export", "w", "smoke_#.ply", "--layer", "plumes", "--every", "1"]);
-    assert_eq!(said.out.lines().count(), 4, "{} {}", said.out, said.err);
+    let said = place.run(&["export", "w", "smoke/%d.ply", "--layer", "plumes", "--every", "1"]);
+    assert_eq!((said.code, said.err.as_str()), (0, "note: 4 files, from 0 to 3 s\n"));
     let refused = |arguments: &[&str], what: &str| {
         let said = place.run(&[&["export"], arguments].concat());
         assert_eq!((said.code, said.err), (2, format!("error: {what}\n")), "{arguments:?}");
     };
     refused(&["w", "s.png", "--layer", "plumes"], "s.png: smoke becomes .ply or .csv");
-    let late = "--at 9: smoke of w lasts from 0 to 3.0 s, when the world ends";
+    let late = "w: there is no moment 9 s: smoke lasts until the world ends, from 0 to 3 s";
     refused(&["w", "s.ply", "--layer", "plumes", "--at", "9"], late);
     let still = &["grow", "fire.toml", "--out", "still", "--set", "lava.smoke_m_per_s=0"];
     assert_eq!(place.run(still).code, 0);

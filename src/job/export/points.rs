@@ -1,10 +1,14 @@
 //! Exports as points: particles of a recording, smoke of a world, at a moment or as a series of files.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::{
     bake::Player,
-    export::{self, POINT_FORMATS, PointFormat, Points},
+    export::{
+        POINT_FORMATS, PointFormat, Points,
+        video::{NumberedFolder, Pattern},
+        write_whole,
+    },
     world::{Layer, Plume, World},
 };
 
@@ -12,10 +16,8 @@ use super::{super::is_recording, ExportRequest, Exported, JobError, names, open_
 
 /// What `--layer` calls the smoke of a world.
 const SMOKE: &str = "plumes";
-/// Most files of a series: as many as its numbers have digits for.
-const MOST_FILES: f64 = 99_999.0;
-/// Digits of a number where the name does not say.
-const DIGITS: usize = 5;
+/// Most files of a series: a slip of the finger fills no disk.
+const MOST_FILES: f64 = 1e5;
 /// Seconds in a year.
 const YEAR_S: f64 = 365.25 * 86_400.0;
 /// Times are counted in floating point.
@@ -75,8 +77,22 @@ impl Source {
     fn last_s(&self) -> f64 {
         match self {
             Self::Particles(player) => player.header().last_s(),
-            Self::Smoke { world, from_yr, .. } => ((world.time_yr - from_yr) * YEAR_S).max(0.0),
+            // Years are good to a microsecond or so.
+            Self::Smoke { world, from_yr, .. } => ((world.time_yr - from_yr) * YEAR_S * 1e3).round().max(0.0) / 1e3,
         }
+    }
+
+    /// Refuses a moment behind the last.
+    fn check(&self, request: &ExportRequest, time_s: f64) -> Result<(), JobError> {
+        let last_s = self.last_s();
+        if time_s <= last_s + SLACK {
+            return Ok(());
+        }
+        let (world, what) = match self {
+            Self::Particles(_) => (request.world.display(), "it lasts"),
+            Self::Smoke { .. } => (request.world.display(), "smoke lasts until the world ends,"),
+        };
+        refuse(format!("{world}: there is no moment {time_s} s: {what} from 0 to {last_s} s"))
     }
 
     fn at(&mut self, time_s: f64) -> Result<Points, JobError> {
@@ -123,81 +139,53 @@ pub fn export(request: &ExportRequest, format: PointFormat) -> Result<Exported, 
         return refuse(format!("{file}: --layer does not go with a recording of particles"));
     }
     let mut source = Source::open(request)?;
-    let moments = moments(request, &source)?;
-    let paths = paths(request, moments.len());
-    names::check(&paths, request.force)?;
-    let mut staged = export::Staged::default();
-    let mut notes = Vec::new();
-    for (path, &time_s) in paths.iter().zip(&moments) {
-        let points = source.at(time_s)?;
-        if points.is_empty() && moments.len() == 1 {
-            notes.push(source.nothing(time_s));
-        }
-        staged.write(path, |out| points.fill(format, path, out))?;
+    if let Some(every_s) = request.every_s {
+        return series(request, format, &mut source, every_s);
     }
-    Ok(Exported { files: staged.finish()?, notes })
+    let time_s = request.at_s.unwrap_or(source.last_s());
+    source.check(request, time_s)?;
+    let points = source.at(time_s)?;
+    names::check(std::slice::from_ref(&request.file), request.force)?;
+    write_whole(&request.file, |out| points.fill(format, &request.file, out))?;
+    let none = points.is_empty().then(|| source.nothing(time_s));
+    Ok(Exported { files: vec![request.file.clone()], notes: none.into_iter().collect() })
 }
 
-/// The moments that are asked for, s.
-fn moments(request: &ExportRequest, source: &Source) -> Result<Vec<f64>, JobError> {
-    let (last_s, smoke) = (source.last_s(), matches!(source, Source::Smoke { .. }));
-    if let (true, Some(at_s)) = (smoke, request.at_s)
-        && at_s > last_s + SLACK
-    {
-        let world = request.world.display();
-        return refuse(format!("--at {at_s}: smoke of {world} lasts from 0 to {last_s:.1} s, when the world ends"));
+/// Fills a new folder with numbered files, from 1, as films do.
+fn series(
+    request: &ExportRequest,
+    format: PointFormat,
+    source: &mut Source,
+    every_s: f64,
+) -> Result<Exported, JobError> {
+    let file = request.file.display();
+    let ending = request.file.extension().unwrap_or_default().to_string_lossy();
+    let name = request.file.file_name().unwrap_or_default().to_string_lossy();
+    let folder = request.file.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let (Some(pattern), Some(folder)) = (Pattern::parse(&name), folder) else {
+        return refuse(format!("{file}: name a new folder and number the files in it, as in points/%05d.{ending}"));
+    };
+    let moments = moments(request, source, every_s)?;
+    let filled = NumberedFolder::begin(folder)?;
+    for (number, &time_s) in (1..).zip(&moments) {
+        let (name, points) = (pattern.name(number), source.at(time_s)?);
+        write_whole(&filled.path().join(&name), |out| points.fill(format, &folder.join(&name), out))?;
     }
-    let Some(every_s) = request.every_s else { return Ok(vec![request.at_s.unwrap_or(last_s)]) };
-    let from_s = request.at_s.unwrap_or(0.0);
-    let files = ((last_s - from_s) / every_s + SLACK).floor() + 1.0;
+    let folder = filled.finish()?;
+    let (files, [from_s, to_s]) = (moments.len(), [moments[0], moments[moments.len() - 1]]);
+    Ok(Exported { files: vec![folder], notes: vec![format!("{files} files, from {from_s} to {to_s} s")] })
+}
+
+/// The moments of a series, s: at least one.
+fn moments(request: &ExportRequest, source: &Source, every_s: f64) -> Result<Vec<f64>, JobError> {
+    let (from_s, last_s) = (request.at_s.unwrap_or(0.0), source.last_s());
+    source.check(request, from_s)?;
+    let files = ((last_s - from_s) / every_s + SLACK).floor().max(0.0) + 1.0;
     if files > MOST_FILES {
         let least_s = (last_s - from_s) / (MOST_FILES - 1.0);
         return refuse(format!(
             "--every {every_s}: that would be {files:.0} files, {MOST_FILES:.0} at most; take {least_s:.1e} s or more"
         ));
     }
-    // A series that begins behind the end has one moment, which the recording refuses.
-    let files = files.max(1.0) as usize;
-    let within = |at_s: f64| if from_s <= last_s { at_s.min(last_s) } else { at_s };
-    Ok((0..files).map(|k| within(from_s + k as f64 * every_s)).collect())
-}
-
-/// The files: the one that is named, or for a series the name with a number, from 1. It takes the place of the last `#`s of
-/// the name, as many digits as there are; without any it stands before the ending.
-fn paths(request: &ExportRequest, files: usize) -> Vec<PathBuf> {
-    if request.every_s.is_none() {
-        return vec![request.file.clone()];
-    }
-    let name = request.file.file_name().unwrap_or_default().to_string_lossy();
-    let (before, digits, behind) = match name.rfind('#') {
-        Some(last) => {
-            let first = name[..last].trim_end_matches('#').len();
-            (name[..first].to_owned(), last + 1 - first, name[last + 1..].to_owned())
-        }
-        None => {
-            let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
-            let [stem, ending] = [request.file.file_stem(), request.file.extension()].map(part);
-            (format!("{stem}_"), DIGITS, format!(".{ending}"))
-        }
-    };
-    (1..=files).map(|k| request.file.with_file_name(format!("{before}{k:0digits$}{behind}"))).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_series_is_numbered_where_the_name_says_so() {
-        let names = |file: &str, every_s: Option<f64>, files: usize| -> Vec<String> {
-            let request = ExportRequest { file: file.into(), every_s, ..ExportRequest::default() };
-            paths(&request, files).iter().map(|path| path.display().to_string()).collect()
-        };
-        assert_eq!(names("a/p#.ply", None, 1), ["a/p#.ply"]);
-        assert_eq!(names("a/p.ply", Some(1.0), 2), ["a/p_00001.ply", "a/p_00002.ply"]);
-        assert_eq!(names("a/###.csv", Some(1.0), 1), ["a/001.csv"]);
-        assert_eq!(names("a#b##c.ply", Some(1.0), 1), ["a#b01c.ply"]);
-        // More than the digits hold: the name grows, and none is written twice.
-        assert_eq!(names("#.ply", Some(1.0), 10)[8..], ["9.ply", "10.ply"]);
-    }
+    Ok((0..files as u32).map(|k| (from_s + f64::from(k) * every_s).min(last_s)).collect())
 }

@@ -71,7 +71,11 @@ fn particles_and_sheet_run_as_far_down_a_slope() {
     let sheet = LavaSheetParams {
         duration_h: 60.0 * env("DU", 2.0) / hour_s,
         vent,
-        schedule: vec![schedule::SheetKey { start_h: 0.0, duration_h: Some(15.0 * env("DU", 2.0) / hour_s), m3_per_s: 80.0 / env("DU", 2.0) }],
+        schedule: vec![schedule::SheetKey {
+            start_h: 0.0,
+            duration_h: Some(15.0 * env("DU", 2.0) / hour_s),
+            m3_per_s: 80.0 / env("DU", 2.0),
+        }],
         viscosity_pa_s,
         viscosity_per_k: 0.0,
         yield_pa,
