@@ -53,13 +53,12 @@ fn particles_and_sheet_run_as_far_down_a_slope() {
     // 1200 m³ in half a minute, followed for two: 10 kPa·s, a yield stress of 4 kPa, no heat. It rests where it is
     // τ/(ρ g sin α) = 0.9 m deep.
     let vent = vec![VentParams { at_km: VENT_M.map(|m| 1e-3 * m), to_km: None, radius_m: Some(WIDE_M), part: None }];
-    let env = |n: &str, d: f64| std::env::var(n).ok().and_then(|t| t.parse::<f64>().ok()).unwrap_or(d);
-    let (viscosity_pa_s, yield_pa) = (env("VI", 1e4), 4e3);
+    let (viscosity_pa_s, yield_pa) = (1e4, 4e3);
     let particles = LavaParams {
-        duration_min: env("DU", 2.0),
+        duration_min: 2.0,
         vent: vent.clone(),
-        schedule: vec![schedule::Key::volume(0.0, 15.0 * env("DU", 2.0), 80.0 / env("DU", 2.0))],
-        spacing_m: env("SP", 0.75),
+        schedule: vec![schedule::Key::volume(0.0, 30.0, 40.0)],
+        spacing_m: 0.75,
         viscosity_pa_s,
         viscosity_per_k: 0.0,
         yield_pa,
@@ -69,13 +68,9 @@ fn particles_and_sheet_run_as_far_down_a_slope() {
     };
     let hour_s = 3600.0;
     let sheet = LavaSheetParams {
-        duration_h: 60.0 * env("DU", 2.0) / hour_s,
+        duration_h: 120.0 / hour_s,
         vent,
-        schedule: vec![schedule::SheetKey {
-            start_h: 0.0,
-            duration_h: Some(15.0 * env("DU", 2.0) / hour_s),
-            m3_per_s: 80.0 / env("DU", 2.0),
-        }],
+        schedule: vec![schedule::SheetKey { start_h: 0.0, duration_h: Some(30.0 / hour_s), m3_per_s: 40.0 }],
         viscosity_pa_s,
         viscosity_per_k: 0.0,
         yield_pa,

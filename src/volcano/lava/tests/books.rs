@@ -109,38 +109,6 @@ fn the_sea_freezes_lava_sooner() {
 }
 
 #[test]
-fn the_seas_chill_builds_a_delta() {
-    // A plane of 8 degrees into the sea; the shore is 16 m from the vent.
-    let grid = Grid::new(32, 72, 32.0, Edges::Closed);
-    let shore_m = 32.0;
-    let outcome = |sea_w_per_m2_k: f64| {
-        let mut world = world(grid, |_, y| 0.14 * (shore_m - y));
-        world.sea_level_m = 0.0;
-        let params = LavaParams {
-            cooling_factor: 100.0,
-            sea_w_per_m2_k,
-            schedule: vec![Timed::particles(0.0, 15.0, 100.0)],
-            vent: vec![VentParams { at_km: [0.016, 0.016], to_km: None, radius_m: Some(2.0), part: None }],
-            ..small()
-        };
-        let mut own = eruption(&params, &world);
-        own.run(0.0, 30.0).unwrap();
-        own.settle();
-        own.land.write(&mut world, 0.6, "lava");
-        let (height, lava) = (world.height(), world.layer(Layer::Lava).unwrap());
-        let south = |i: usize| grid.center_m(grid.cell_of(i).0, grid.cell_of(i).1)[1] - shore_m;
-        let cells = || (0..grid.cells()).filter(|&i| south(i) > 0.0 && lava.data[i] > 0.1);
-        let land_m2 = cells().filter(|&i| height.data[i] > 0.0).count() as f64 * grid.cell_area_m2();
-        let reach_m = cells().map(south).fold(0.0, f64::max);
-        let volume_m3: f64 = cells().map(|i| f64::from(lava.data[i]) * grid.cell_area_m2()).sum();
-        eprintln!("{land_m2} {reach_m} {volume_m3}");
-        (land_m2, reach_m, volume_m3)
-    };
-    let (chilled, warm) = (outcome(5000.0), outcome(10.0));
-    eprintln!("{chilled:?} {warm:?}");
-}
-
-#[test]
 fn frozen_lava_is_ground_with_its_own_hardness_and_buries_sediment() {
     let mut world = cone();
     world.layer_mut(Layer::Sediment).data.fill(0.3);
