@@ -55,14 +55,14 @@ pub fn asked(request: &ExportRequest) -> Result<Option<PointFormat>, JobError> {
 
 /// What points come from.
 enum Source {
-    Particles(Player),
+    Particles(Box<Player>),
     Smoke { world: World, plumes: Vec<Plume>, from_yr: f64 },
 }
 
 impl Source {
     fn open(request: &ExportRequest) -> Result<Self, JobError> {
         if is_recording(&request.world) {
-            return Ok(Self::Particles(Player::open(&request.world)?));
+            return Ok(Self::Particles(Box::new(Player::open(&request.world)?)));
         }
         let (world, _) = open_world(&request.world)?;
         let plumes = world.plumes();
