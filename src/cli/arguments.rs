@@ -201,7 +201,7 @@ pub(crate) struct RawExport {
     pub world: PathBuf,
     /// The file: .png .tif .exr .asc .r16 .raw .r32, meshes .glb .obj .stl, maps of lines .svg .geojson, particles .ply .csv
     pub file: PathBuf,
-    /// A layer, normals (a normal map) or weights (of sand, grass, rock and snow)
+    /// A layer, normals (a normal map), weights (of sand, grass, rock and snow), or plumes (puffs of smoke, .ply .csv)
     #[arg(long, value_name = "NAME", default_value = "height")]
     pub layer: String,
     /// Size, order and the numbers to type as this program wants them: unreal, unity, godot, azgaar
@@ -234,9 +234,12 @@ pub(crate) struct RawExport {
     /// Metres between contours (.svg .geojson) [default: a round number, about a dozen on land]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub contours: Option<String>,
-    /// The moment of a recording, since its stage began
+    /// The moment of a recording, since its stage began; of smoke, since the first left a vent [default: the last]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub at: Option<String>,
+    /// A new folder of files, such as points/%05d.ply, one for every so many seconds from --at or the beginning to the end
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub every: Option<String>,
     /// Replace files that exist
     #[arg(long)]
     pub force: bool,

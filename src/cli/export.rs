@@ -29,6 +29,7 @@ pub(crate) fn validate(raw: RawExport) -> Result<ExportRequest, CliError> {
         green: raw.normal_y.as_deref().map(green).transpose()?,
         contours_m: raw.contours.as_deref().map(contours).transpose()?,
         at_s: raw.at.as_deref().map(moment).transpose()?,
+        every_s: raw.every.as_deref().map(every).transpose()?,
         world: raw.world,
         file: raw.file,
         layer: raw.layer,
@@ -112,6 +113,13 @@ fn moment(text: &str) -> Result<f64, CliError> {
     match text.parse::<f64>() {
         Ok(s) if s.is_finite() && s >= 0.0 => Ok(s),
         _ => wrong(format!("--at {text}: must be a number of seconds from 0")),
+    }
+}
+
+fn every(text: &str) -> Result<f64, CliError> {
+    match text.parse::<f64>() {
+        Ok(s) if s.is_finite() && s > 0.0 => Ok(s),
+        _ => wrong(format!("--every {text}: must be a number of seconds above 0, such as 0.04")),
     }
 }
 

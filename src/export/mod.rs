@@ -9,7 +9,7 @@
 //! | `.r16 .raw .r32` | a layer as bare numbers | [`raster`] |
 //! | `.glb` `.obj` `.stl` | the ground as a mesh | [`write_mesh`] |
 //! | `.geojson` `.svg` | coast, contours, rivers, lakes, plates as lines and polygons | [`write_vector`] |
-//! | `.ply` `.csv` | particles at a moment, as points | [`write_points`] |
+//! | `.ply` `.csv` | particles or smoke at a moment, as points | [`Points`] |
 //! | films | pictures in time order | [`video`] |
 //!
 //! A file is written beside its place and moved there when it is whole. This room reads worlds and never changes them.
@@ -28,7 +28,7 @@ mod weights;
 pub use height_png::{HeightRange, write_height_png, write_height_png_within};
 pub use mesh::{MESH_FORMATS, MESH_SIDES, MeshFormat, MeshOptions, write_glb, write_mesh, write_obj, write_stl};
 pub use normals::{Green, encoded as encoded_normal, normals};
-pub use points::{POINT_FORMATS, PointFormat, Points, write_points};
+pub use points::{POINT_FORMATS, PointFormat, Points};
 pub use staged::Staged;
 pub use vector::{VECTOR_FORMATS, VectorFormat, VectorOptions, write_vector};
 pub use weights::{MATERIALS, WeightRules};

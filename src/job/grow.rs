@@ -154,12 +154,15 @@ fn findings(plan: &Plan, records: &[StageRecord]) -> Vec<String> {
     records.iter().flat_map(lines).collect()
 }
 
-/// The layers of the timeline, where one is kept: also those by which the land is coloured, for films of it.
+/// The layers of the timeline, where one is kept: also those by which the land is coloured and lava is drawn, for films of it.
 fn kept_layers(request: &Request, until: Option<usize>) -> Result<Option<Vec<Layer>>, JobError> {
     let Some(mut layers) = request.keep.clone() else { return Ok(None) };
     let made = made(&request.plan, until)?;
-    if relief::CLIMATE.iter().all(|layer| made.contains(layer)) {
-        layers.extend(relief::CLIMATE.iter().filter(|layer| !request.keep.iter().flatten().any(|kept| kept == *layer)));
+    for drawn in [&relief::CLIMATE[..], &relief::LAVA] {
+        if drawn.iter().all(|layer| made.contains(layer)) {
+            let missing: Vec<Layer> = drawn.iter().copied().filter(|layer| !layers.contains(layer)).collect();
+            layers.extend(missing);
+        }
     }
     Ok(Some(layers))
 }

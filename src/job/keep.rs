@@ -73,8 +73,9 @@ impl Sink for KeepSink {
             let last = self.recorders.last().and_then(|recorder| recorder.frames().last());
             last.map_or(0.0, |frame| after((frame.stage as f64 + frame.done) / moment.stages as f64))
         });
-        // Weather as the last step found it, as in a film.
-        let ground = |layer: &Layer| *layer == Layer::Height || relief::CLIMATE.contains(layer);
+        // Weather as the last step found it, as in a film; lava is laid with every step.
+        let ground =
+            |layer: &Layer| *layer == Layer::Height || relief::CLIMATE.contains(layer) || relief::LAVA.contains(layer);
         let wanted = if self.layers.iter().all(ground) { Interest::Ground } else { Interest::Whole };
         wanted.when(moment.stage_over() || moment.overall() >= next)
     }

@@ -18,6 +18,9 @@ const FLOWING_M: [f32; 2] = [0.02, 0.3];
 /// Share of the land's colour that frozen lava hides.
 const HIDES: f32 = 0.85;
 
+/// The layers by which lava is drawn.
+pub const LAYERS: [Layer; 3] = [Layer::Lava, Layer::MoltenLava, Layer::MoltenTemperature];
+
 /// Lava at a picture's raster.
 pub struct Lava {
     /// Depth of what froze, of what flows, m, and the temperature of that, degC.
@@ -28,7 +31,7 @@ pub struct Lava {
 impl Lava {
     /// That of a world; `None` where there is none.
     pub fn of(world: &World, bring: impl Fn(&Field<f32>) -> Field<f32>) -> Option<Self> {
-        let layers = [Layer::Lava, Layer::MoltenLava, Layer::MoltenTemperature].map(|layer| world.layer(layer));
+        let layers = LAYERS.map(|layer| world.layer(layer));
         let there = layers[..2].iter().flatten().any(|layer| layer.data.iter().any(|&depth| depth > FROZEN_M[0]));
         let spec = Layer::MoltenTemperature.spec();
         there.then(|| Self { layers: layers.map(|layer| layer.map(&bring)), heat: Scale::over(&spec, spec.range) })

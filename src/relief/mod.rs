@@ -30,6 +30,7 @@ mod tint;
 
 pub use cover::LAYERS as CLIMATE;
 pub use drape::{Drape, Margins};
+pub use lava::LAYERS as LAVA;
 pub use sheet::contact_sheet;
 
 use image::RgbImage;

@@ -2,9 +2,19 @@
 //!
 //! In `f64`, and the same product for both of a pair, so that what one gains is to the last bit what the other loses.
 
+use std::marker::PhantomData;
+
 use rayon::prelude::*;
 
-use super::{Cloud, Domain, Kernel, Lists, RUN, Scale};
+use super::{
+    Cloud, Domain, Kernel, LANES, Lists, RUN, Reader, Scale, Work,
+    cells::away,
+    forces::{Pairs, check, eight, pack, total},
+    widest,
+};
+
+/// Radius of a ball of a particle's volume, in spacings.
+const BESIDE: f32 = 0.62;
 
 /// A particle among its neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,25 +36,67 @@ pub fn look_around<K: Kernel>(
     out: &mut Vec<Around>,
 ) {
     let n = lists.particles();
-    assert!(cloud.len() == n && values.len() == n && thin.len() == n);
+    check(cloud, lists);
+    assert!(values.len() == n && thin.len() == n);
     out.resize(n, Around::default());
-    let (h, beside) = (scale.h_m, 0.62 * scale.spacing_m);
-    let weight = scale.volume_m3 / (h * h * h * h * h);
-    out.par_chunks_mut(RUN).enumerate().for_each(|(r, run)| {
-        for (k, out) in run.iter_mut().enumerate() {
-            let i = r * RUN + k;
-            let mut sum = Around::default();
-            for j in lists.of(i) {
-                let way = domain.nearest([cloud.x[i] - cloud.x[j], cloud.y[i] - cloud.y[j], cloud.z[i] - cloud.z[j]]);
-                let level = way[0] * way[0] + way[1] * way[1];
-                let slope = weight * K::slope((level + way[2] * way[2]).sqrt() / h);
-                sum.laplacian += f64::from(-2.0 * slope * (thin[i] * thin[j])) * (values[j] - values[i]);
-                for (inward, way) in sum.inward.iter_mut().zip(way) {
-                    *inward += slope * way;
-                }
-                sum.covered |= way[2] < 0.0 && level < beside * beside;
-            }
-            *out = sum;
+    let mut place = Vec::new();
+    pack(&mut place, [&cloud.x, &cloud.y, &cloud.z, thin]);
+    (lists.runs().par_iter(), out.par_chunks_mut(RUN)).into_par_iter().enumerate().for_each(|(r, (run, out))| {
+        let pairs = Pairs { place: &place, domain, rows: &run.rows, first: r * RUN };
+        match domain.wrap_m {
+            None => widest(Look::<K, false> { pairs, scale, values, out, kernel: PhantomData }),
+            Some(_) => widest(Look::<K, true> { pairs, scale, values, out, kernel: PhantomData }),
         }
     });
+}
+
+struct Look<'a, K, const WRAP: bool> {
+    pairs: Pairs<'a>,
+    scale: &'a Scale,
+    values: &'a [f64],
+    out: &'a mut [Around],
+    kernel: PhantomData<K>,
+}
+
+impl<K: Kernel, const WRAP: bool> Work for Look<'_, K, WRAP> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<R: Reader>(self) {
+        let Self { pairs: Pairs { place, domain, rows, first }, scale, values, out, .. } = self;
+        let [wx, wy] = domain.wrap_m.unwrap_or_default();
+        let (h, beside) = (scale.h_m, BESIDE * scale.spacing_m);
+        let (per_h, weight, beside2) = (1.0 / h, scale.volume_m3 / (h * h * h * h * h), beside * beside);
+        for (k, out) in out.iter_mut().enumerate() {
+            let ([x, y, z, thin], value) = (place[first + k], values[first + k]);
+            let mut laplacian = [0.0f64; LANES];
+            let (mut ax, mut ay, mut az) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            let mut above = [0u32; LANES];
+            for js in rows.of(k).as_chunks().0 {
+                let [xs, ys, zs, thins] = eight::<R>(place, js);
+                let mut theirs = [0.0f64; LANES];
+                for l in 0..LANES {
+                    theirs[l] = values[js[l] as usize];
+                }
+                // The particle itself, with which lists are filled up, is 0 away and as hot: it adds nothing.
+                for l in 0..LANES {
+                    let (dx, dy) = (away::<WRAP>(x, xs[l], wx), away::<WRAP>(y, ys[l], wy));
+                    let dz = z - zs[l];
+                    let level = dx * dx + dy * dy;
+                    let slope = weight * K::slope((level + dz * dz).sqrt() * per_h);
+                    laplacian[l] += f64::from(-2.0 * slope * (thin * thins[l])) * (theirs[l] - value);
+                    ax[l] += slope * dx;
+                    ay[l] += slope * dy;
+                    az[l] += slope * dz;
+                    above[l] |= u32::from((dz < 0.0) & (level < beside2));
+                }
+            }
+            let [a, b, c, d] = [0, 1, 2, 3].map(|l| laplacian[l] + laplacian[l + 4]);
+            *out = Around {
+                laplacian: (a + c) + (b + d),
+                inward: [total(ax), total(ay), total(az)],
+                covered: above != [0; LANES],
+            };
+        }
+    }
 }

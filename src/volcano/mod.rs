@@ -6,8 +6,6 @@
 //! sinks, they are asked through the world's tables. Vents go into the table that [`crate::world::World::vents`] reads.
 
 pub mod ash;
-#[cfg(test)]
-mod beside;
 mod edifice;
 mod heat;
 mod island;
@@ -15,6 +13,9 @@ pub mod lava;
 mod outlet;
 mod schedule;
 pub mod sheet;
+mod smoke;
+#[cfg(test)]
+mod tests;
 
 pub use ash::AshParams;
 pub use edifice::{

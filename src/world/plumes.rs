@@ -15,7 +15,7 @@ const YEAR_S: f64 = 365.25 * 86_400.0;
 const MOST_PUFFS: f64 = 5000.0;
 
 /// Smoke from a vent.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Plume {
     /// The vent, or where a fissure begins: from the map's north-west corner, and over the world's datum, m.
     pub at_m: [f64; 3],
@@ -64,25 +64,28 @@ pub struct Puff {
     pub turn_rad: f64,
 }
 
-/// The columns of the table, with their units.
-const COLUMNS: [(&str, &str); 17] = [
-    ("x_m", "m"),
-    ("y_m", "m"),
-    ("z_m", "m"),
-    ("along_x_m", "m"),
-    ("along_y_m", "m"),
-    ("radius_m", "m"),
-    ("begin_yr", "yr"),
-    ("end_yr", "yr"),
-    ("puffs_per_s", "1/s"),
-    ("rise_m_per_s", "m/s"),
-    ("slows_s", "s"),
-    ("swell", "1"),
-    ("wind_x_m_per_s", "m/s"),
-    ("wind_y_m_per_s", "m/s"),
-    ("wind_at_m", "m"),
-    ("lasts_s", "s"),
-    ("seed", "1"),
+/// A column of the table: name, unit, and where its number stands in a plume.
+type Column = (&'static str, &'static str, fn(&mut Plume) -> &mut f64);
+
+/// The columns of the table.
+const COLUMNS: [Column; 17] = [
+    ("x_m", "m", |plume| &mut plume.at_m[0]),
+    ("y_m", "m", |plume| &mut plume.at_m[1]),
+    ("z_m", "m", |plume| &mut plume.at_m[2]),
+    ("along_x_m", "m", |plume| &mut plume.along_m[0]),
+    ("along_y_m", "m", |plume| &mut plume.along_m[1]),
+    ("radius_m", "m", |plume| &mut plume.radius_m),
+    ("begin_yr", "yr", |plume| &mut plume.begin_yr),
+    ("end_yr", "yr", |plume| &mut plume.end_yr),
+    ("puffs_per_s", "1/s", |plume| &mut plume.puffs_per_s),
+    ("rise_m_per_s", "m/s", |plume| &mut plume.rise_m_per_s),
+    ("slows_s", "s", |plume| &mut plume.slows_s),
+    ("swell", "1", |plume| &mut plume.swell),
+    ("wind_x_m_per_s", "m/s", |plume| &mut plume.wind_m_per_s[0]),
+    ("wind_y_m_per_s", "m/s", |plume| &mut plume.wind_m_per_s[1]),
+    ("wind_at_m", "m", |plume| &mut plume.wind_at_m),
+    ("lasts_s", "s", |plume| &mut plume.lasts_s),
+    ("seed", "1", |plume| &mut plume.seed),
 ];
 
 impl Plume {
@@ -143,89 +146,29 @@ impl Plume {
         let at_m = [blown(0), blown(1), self.at_m[2] + rise];
         Some(Puff { number, at_m, radius_m, age_s, spent, opacity, turn_rad: angle + spin * age_s })
     }
-
-    fn row(&self) -> [f64; COLUMNS.len()] {
-        let ([x, y, z], [along_x, along_y], [wind_x, wind_y]) = (self.at_m, self.along_m, self.wind_m_per_s);
-        let times = [self.begin_yr, self.end_yr, self.puffs_per_s, self.rise_m_per_s, self.slows_s];
-        let [begin, end, puffs, rise, slows] = times;
-        let (swell, wind_at, lasts) = (self.swell, self.wind_at_m, self.lasts_s);
-        [
-            x,
-            y,
-            z,
-            along_x,
-            along_y,
-            self.radius_m,
-            begin,
-            end,
-            puffs,
-            rise,
-            slows,
-            swell,
-            wind_x,
-            wind_y,
-            wind_at,
-            lasts,
-            self.seed,
-        ]
-    }
-
-    fn of(
-        [
-            x,
-            y,
-            z,
-            along_x,
-            along_y,
-            radius,
-            begin,
-            end,
-            puffs,
-            rise,
-            slows,
-            swell,
-            wind_x,
-            wind_y,
-            wind_at,
-            lasts,
-            seed,
-        ]: [f64; COLUMNS.len()],
-    ) -> Self {
-        Self {
-            at_m: [x, y, z],
-            along_m: [along_x, along_y],
-            radius_m: radius,
-            begin_yr: begin,
-            end_yr: end,
-            puffs_per_s: puffs,
-            rise_m_per_s: rise,
-            slows_s: slows,
-            swell,
-            wind_m_per_s: [wind_x, wind_y],
-            wind_at_m: wind_at,
-            lasts_s: lasts,
-            seed,
-        }
-    }
 }
 
 impl World {
     /// The plumes that there are or were, in the order in which they were written.
     pub fn plumes(&self) -> Vec<Plume> {
         let Some(table) = self.table(PLUMES) else { return Vec::new() };
-        let columns: Option<Vec<&[f64]>> = COLUMNS.iter().map(|(name, _)| table.numbers(name)).collect();
-        let Some(columns) = columns else { return Vec::new() };
-        (0..table.rows()).map(|row| Plume::of(std::array::from_fn(|column| columns[column][row]))).collect()
+        let mut plumes = vec![Plume::default(); table.rows()];
+        for (name, _, place) in COLUMNS {
+            let Some(numbers) = table.numbers(name) else { return Vec::new() };
+            plumes.iter_mut().zip(numbers).for_each(|(plume, &number)| *place(plume) = number);
+        }
+        plumes
     }
 
     /// Adds plumes to those that are there.
     pub fn add_plumes(&mut self, new: &[Plume]) {
-        let rows: Vec<[f64; COLUMNS.len()]> = self.plumes().iter().chain(new).map(Plume::row).collect();
-        if rows.is_empty() {
+        let mut plumes = self.plumes();
+        plumes.extend(new);
+        if plumes.is_empty() {
             return;
         }
-        let table = COLUMNS.iter().enumerate().fold(Table::new(PLUMES), |table, (column, (name, unit))| {
-            table.number(name, unit, rows.iter().map(|row| row[column]).collect())
+        let table = COLUMNS.iter().fold(Table::new(PLUMES), |table, (name, unit, place)| {
+            table.number(name, unit, plumes.iter_mut().map(|plume| *place(plume)).collect())
         });
         self.set_table(table);
     }
@@ -326,7 +269,12 @@ mod tests {
         let mut world = World::new(Grid::new(4, 4, 4.0, Edges::Open), 0.0);
         world.add_plumes(&[]);
         assert_eq!((world.plumes(), world.table(PLUMES)), (vec![], None));
-        let other = Plume { at_m: [1.0, 2.0, 3.0], along_m: [4.0, 5.0], wind_m_per_s: [6.0, 7.0], ..plume() };
+        // Another number in every place, so that no two can change places unseen.
+        let mut other = plume();
+        for (column, (_, _, place)) in COLUMNS.iter().enumerate() {
+            *place(&mut other) = 1.0 + column as f64;
+        }
+        assert_eq!((other.at_m, other.along_m, other.seed), ([1.0, 2.0, 3.0], [4.0, 5.0], 17.0));
         world.add_plumes(&[plume()]);
         world.add_plumes(&[other]);
         assert_eq!(world.plumes(), [plume(), other]);

@@ -154,6 +154,65 @@ fn what_cannot_be_baked_is_said_before_anything_is_begun() {
 }
 
 #[test]
+fn a_series_of_moments_is_numbered_and_each_is_that_moment() {
+    let place = place();
+    assert_eq!(bake(&place, "w", &["--bake-rate", "20"]).code, 0);
+    let said = place.run(&["export", "w/lava.upbake", "frames/p_%03d.ply", "--every", "0.75"]);
+    let note = "note: 5 files, from 0 to 3 s\n";
+    assert_eq!((said.code, said.out.as_str(), said.err.as_str()), (0, "frames\n", note));
+    assert_eq!(std::fs::read_dir(place.path("frames")).unwrap().count(), 5);
+    assert_eq!(place.run(&["export", "w/lava.upbake", "one.ply", "--at", "1.5"]).code, 0);
+    assert!(bytes(&place, "frames/p_003.ply") == bytes(&place, "one.ply"));
+    let said = place.run(&["export", "w/lava.upbake", "late/%05d.csv", "--every", "1", "--at", "2"]);
+    assert_eq!((said.code, said.err.as_str()), (0, "note: 2 files, from 2 to 3 s\n"));
+    let refused = |arguments: &[&str], what: &str| {
+        let said = place.run(&[&["export", "w/lava.upbake"], arguments].concat());
+        assert_eq!((said.code, said.err), (2, format!("error: {what}\n")), "{arguments:?}");
+    };
+    let full = "frames: this folder has something in it; name a new one for the files";
+    refused(&["frames/%d.ply", "--every", "1"], full);
+    for bare in ["new/p.ply", "%05d.ply"] {
+        let what = format!("{bare}: name a new folder and number the files in it, as in points/%05d.ply");
+        refused(&[bare, "--every", "1"], &what);
+    }
+    let many = "--every 0.00001: that would be 300001 files, 100000 at most; take 3.0e-5 s or more";
+    refused(&["new/%05d.ply", "--every", "0.00001"], many);
+    let outside = "w/lava.upbake: there is no moment 3.5 s: it lasts from 0 to 3 s";
+    refused(&["new/%05d.ply", "--every", "1", "--at", "3.5"], outside);
+    assert!(!place.path("new").exists());
+    for every in ["0", "-1", "x", "inf"] {
+        let what = format!("--every {every}: must be a number of seconds above 0, such as 0.04");
+        refused(&["new/%05d.ply", "--every", every], &what);
+    }
+}
+
+#[test]
+fn smoke_is_exported_as_points() {
+    let place = place();
+    assert_eq!(place.run(&["grow", "fire.toml", "--out", "w"]).code, 0);
+    let said = place.run(&["export", "w", "smoke.csv", "--layer", "plumes"]);
+    assert_eq!((said.code, said.out.as_str()), (0, "smoke.csv\n"), "{}", said.err);
+    let text = String::from_utf8(bytes(&place, "smoke.csv")).unwrap();
+    assert!(text.starts_with("id,x_m,y_m,z_m,radius_m,opacity,age_s,plume\n"), "{text}");
+    // Three puffs a second from 0 to 2 s, and all still in the air at 3 s.
+    assert_eq!(text.lines().count(), 1 + 7, "{text}");
+    let ages: Vec<f64> = text.lines().skip(1).map(|line| line.split(',').nth(6).unwrap().parse().unwrap()).collect();
+    assert!(ages.iter().all(|age| (0.99..=3.01).contains(age)), "{ages:?}");
+    let said = place.run(&["export", "w", "smoke/%d.ply", "--layer", "plumes", "--every", "1"]);
+    assert_eq!((said.code, said.err.as_str()), (0, "note: 4 files, from 0 to 3 s\n"));
+    let refused = |arguments: &[&str], what: &str| {
+        let said = place.run(&[&["export"], arguments].concat());
+        assert_eq!((said.code, said.err), (2, format!("error: {what}\n")), "{arguments:?}");
+    };
+    refused(&["w", "s.png", "--layer", "plumes"], "s.png: smoke becomes .ply or .csv");
+    let late = "w: there is no moment 9 s: smoke lasts until the world ends, from 0 to 3 s";
+    refused(&["w", "s.ply", "--layer", "plumes", "--at", "9"], late);
+    let still = &["grow", "fire.toml", "--out", "still", "--set", "lava.smoke_m_per_s=0"];
+    assert_eq!(place.run(still).code, 0);
+    refused(&["still", "s.ply", "--layer", "plumes"], "still: no vent of this world ever smoked");
+}
+
+#[test]
 fn what_cannot_be_exported_is_said() {
     let place = place();
     assert_eq!(bake(&place, "w", &["--bake-rate", "5"]).code, 0);
@@ -161,11 +220,18 @@ fn what_cannot_be_exported_is_said() {
         let said = place.run(&[&["export"], arguments].concat());
         assert_eq!((said.code, said.err), (2, format!("error: {what}\n")), "{arguments:?}");
     };
-    refused(&["w/lava.upbake", "p.ply"], "p.ply: name the moment with --at SECONDS");
+    refused(
+        &["w/lava.upbake", "p.ply"],
+        "p.ply: name the moment with --at SECONDS, or write a series with --every SECONDS",
+    );
     refused(&["w/lava.upbake", "p.png", "--at", "1"], "p.png: a recording of particles becomes .ply or .csv");
-    let such = "p.ply: such files hold particles, and w is no recording of them; bake one with grow --bake";
+    let such = "p.ply: such files hold particles, and w is no recording of them; bake one with grow --bake, or ask for smoke \
+        with --layer plumes";
     refused(&["w", "p.ply", "--at", "1"], such);
-    refused(&["w", "p.png", "--at", "1"], "--at names a moment of a recording of particles, which this is not");
+    refused(
+        &["w", "p.png", "--at", "1"],
+        "--at is about the time of a recording of particles, or of smoke, which this is not",
+    );
     let outside = "w/lava.upbake: there is no moment 3.5 s: it lasts from 0 to 3 s";
     refused(&["w/lava.upbake", "p.ply", "--at", "3.5"], outside);
     for at in ["-1", "x", "nan"] {

@@ -24,5 +24,5 @@ mod rate;
 pub use encoder::{Encoder, Settings};
 pub use ffmpeg::split_arguments;
 pub use format::Format;
-pub use numbered::NumberedFolder;
+pub use numbered::{NumberedFolder, Pattern};
 pub use rate::Rate;

@@ -23,10 +23,10 @@ impl NumberedFolder {
     /// Prepares to fill a folder that is not there, or is empty.
     pub fn begin(folder: &Path) -> Result<Self, ExportError> {
         let refuse = |what: &str| Err(ExportError::FilmRequest(format!("{}: {what}", folder.display())));
-        let Some(name) = folder.file_name() else { return refuse("name a new folder for the pictures") };
+        let Some(name) = folder.file_name() else { return refuse("name a new folder for the files") };
         match fs::read_dir(folder).map(|mut entries| entries.next().is_some()) {
             Ok(true) => {
-                return refuse("this folder has something in it; name a new one for the pictures");
+                return refuse("this folder has something in it; name a new one for the files");
             }
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => return refuse("there is a file of that name"),
             _ => {}
@@ -66,14 +66,15 @@ impl Drop for NumberedFolder {
 
 /// The name of numbered files: `frame-%05d.png`.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Pattern {
+pub struct Pattern {
     before: String,
     digits: usize,
     after: String,
 }
 
 impl Pattern {
-    fn parse(name: &str) -> Option<Self> {
+    /// Reads it; `None` where no number is to stand, or more than one.
+    pub fn parse(name: &str) -> Option<Self> {
         let (before, rest) = name.split_once('%')?;
         let (digits, after) = rest.split_once('d')?;
         let digits = if digits.is_empty() { 1 } else { digits.parse().ok().filter(|n| (1..=9).contains(n))? };
@@ -81,7 +82,8 @@ impl Pattern {
         plain.then(|| Self { before: before.to_owned(), digits, after: after.to_owned() })
     }
 
-    fn name(&self, number: u64) -> String {
+    /// The name with a number in its place.
+    pub fn name(&self, number: u64) -> String {
         format!("{}{number:0digits$}{}", self.before, self.after, digits = self.digits)
     }
 }

@@ -58,8 +58,10 @@ pub struct ExportRequest {
     pub green: Option<Green>,
     /// Metres between the contours of a vector map; a round number that suits the land if absent.
     pub contours_m: Option<f64>,
-    /// The moment of a recording of particles, s.
+    /// The moment of a recording of particles or of smoke, or where a series of them begins, s.
     pub at_s: Option<f64>,
+    /// Time between the files of a series, s; one file if absent.
+    pub every_s: Option<f64>,
     /// Replace files that are there.
     pub force: bool,
 }

@@ -28,6 +28,7 @@ mod film;
 mod law;
 mod params;
 mod rows;
+mod smoke;
 mod solve;
 mod stage;
 #[cfg(test)]

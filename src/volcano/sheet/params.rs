@@ -75,6 +75,15 @@ pub struct LavaSheetParams {
     /// Temperature of air, ground and sea.
     #[schemars(range(min = -200.0, max = 3000.0), extend("x-unit" = "degC", "x-effect" = "cools slower"))]
     pub ambient_degc: f64,
+    /// Speed with which smoke leaves the vents, for pictures; 0: none.
+    #[schemars(range(min = 0.0, max = 200.0), extend("x-unit" = "m/s", "x-effect" = "smoke rises higher and spreads wider"))]
+    pub smoke_m_per_s: f64,
+    /// Where the wind comes from that blows it: 0 north, 90 east.
+    #[schemars(range(min = -360.0, max = 360.0), extend("x-unit" = "deg", "x-effect" = "turns the smoke clockwise"))]
+    pub wind_from_deg: f64,
+    /// Speed of that wind a kilometre over the vents.
+    #[schemars(range(min = 0.0, max = 150.0), extend("x-unit" = "m/s", "x-effect" = "smoke drifts further off"))]
+    pub wind_m_per_s: f64,
     /// Hardness of frozen lava.
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1", "x-effect" = "later water carves it slower"))]
     pub hardness: f64,
@@ -105,6 +114,9 @@ impl Default for LavaSheetParams {
             ground_w_per_m2_k: 5.0,
             sea_w_per_m2_k: 5000.0,
             ambient_degc: 20.0,
+            smoke_m_per_s: 10.0,
+            wind_from_deg: 270.0,
+            wind_m_per_s: 6.0,
             hardness: 0.6,
         }
     }

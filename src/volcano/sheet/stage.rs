@@ -9,7 +9,7 @@ use crate::{
         over_rim,
         schedule::{HOUR_S, Schedule},
     },
-    world::{Layer, Matter, World},
+    world::{Layer, Matter, Plume, World},
 };
 
 /// Steps of a stage where the recipe does not say.
@@ -42,6 +42,8 @@ struct Stage {
 struct Run {
     /// Cells that lava comes out of, and their shares.
     sources: Vec<(usize, f64)>,
+    /// Smoke that the world is to hear of with the first step that is whole.
+    smoke: Vec<Plume>,
     melt: Vec<Melt>,
     /// What the layers of the column could not hold yet, m.
     rest: Field<f32>,
@@ -60,8 +62,9 @@ impl Stage {
     fn begin(&self, world: &mut World, context: &Context) -> Result<Run, ProcessError> {
         let mask = self.placement.mask.as_ref().map(|mask| mask.evaluate(world)).transpose()?;
         let sources = sources(&self.params, world, mask.as_ref()).map_err(ProcessError::Unfit)?;
+        let smoke = self.params.plumes(world, mask.as_ref(), context.key)?;
         world.ledger.open(context.stage, Matter::Lava, 0.0);
-        Ok(Run { sources, melt: Vec::new(), rest: Field::filled(world.grid, 0.0), over_rim_m3: 0.0 })
+        Ok(Run { sources, smoke, melt: Vec::new(), rest: Field::filled(world.grid, 0.0), over_rim_m3: 0.0 })
     }
 
     /// The seconds between which a step runs.
@@ -231,7 +234,7 @@ impl Run {
         };
         let whole = melt.len().is_multiple_of(3);
         let melt = melt.chunks_exact(3).map(three).collect::<Option<Vec<_>>>().filter(|_| whole)?;
-        Some(Self { sources, melt, rest, over_rim_m3: f64::from_le_bytes(over_rim) })
+        Some(Self { sources, smoke: Vec::new(), melt, rest, over_rim_m3: f64::from_le_bytes(over_rim) })
     }
 }
 
@@ -286,6 +289,7 @@ impl Process for Stage {
                 return Err(stopped);
             }
         }
+        world.add_plumes(&std::mem::take(&mut run.smoke));
         let elapsed_yr = self.elapsed_yr();
         self.run = Some(run);
         self.done += 1;

@@ -110,6 +110,38 @@ fn lava_builds_land_out_of_the_sea() {
 }
 
 #[test]
+fn the_seas_chill_builds_a_delta() {
+    // A plane of 8 degrees into the sea, 300 m from the vent to the shore, and half a million m³ of lava.
+    let grid = Grid::new(40, 80, 800.0, Edges::Closed);
+    let shore_m = 800.0;
+    let outcome = |sea_w_per_m2_k: f64| {
+        let mut world = World::new(grid, 0.0);
+        world.set_layer(Layer::Bedrock, Field::from_fn(grid, |_, y| 0.14 * (shore_m - 20.0 * (y as f32 + 0.5))));
+        let params = LavaSheetParams {
+            duration_h: 8.0,
+            schedule: vec![SheetKey { start_h: 0.0, duration_h: Some(5.0), m3_per_s: 30.0 }],
+            vent: vec![VentParams { at_km: [0.4, 0.5], to_km: None, radius_m: Some(40.0), part: None }],
+            sea_w_per_m2_k,
+            ..LavaSheetParams::default()
+        };
+        let world = erupt(params, world).unwrap();
+        let (height, lava) = (world.height(), world.layer(Layer::Lava).unwrap());
+        let south = |i: usize| grid.center_m(grid.cell_of(i).0, grid.cell_of(i).1)[1] - f64::from(shore_m);
+        let cells = || (0..grid.cells()).filter(|&i| south(i) > 0.0 && lava.data[i] > 0.5);
+        let land = cells().filter(|&i| height.data[i] > 0.0).count() as f64 * grid.cell_area_m2();
+        let reach_m = cells().map(south).fold(0.0, f64::max);
+        let volume: f64 = cells().map(|i| f64::from(lava.data[i]) * grid.cell_area_m2()).sum();
+        (land, reach_m, volume)
+    };
+    let (chilled, warm) = (outcome(5000.0), outcome(50.0));
+    // With the chill it stays within a quarter of how far it runs without, and rises above the water; without, it runs down to the wall and lies too thin to be land.
+    assert!(chilled.1 < 0.3 * warm.1, "{chilled:?} {warm:?}");
+    assert!(chilled.0 > 30_000.0 && warm.0 == 0.0, "{chilled:?} {warm:?}");
+    // As much lava got there: it is not that it froze on land.
+    assert!((chilled.2 / warm.2 - 1.0).abs() < 0.15, "{chilled:?} {warm:?}");
+}
+
+#[test]
 fn what_cannot_be_is_refused_in_a_line_and_what_is_odd_is_survived() {
     let refused = |params: LavaSheetParams| match erupt(params, slope(Edges::Open)) {
         Err(ProcessError::Unfit(text)) => text,

@@ -2,7 +2,7 @@
 
 use std::{sync::atomic::AtomicBool, time::Instant};
 
-use super::{LavaParams, LavaSheetParams, VentParams, schedule};
+use super::super::{LavaParams, LavaSheetParams, VentParams, schedule};
 use crate::{
     grid::{Edges, Field, Grid},
     process::{Context, Placement, Process},

@@ -1,0 +1,3 @@
+//! What the stages have in common.
+
+mod beside;
