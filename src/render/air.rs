@@ -180,13 +180,7 @@ impl Air {
 
     /// Adds up what is scattered along a ray of what `light` says arrives there: directly, for air and for dust, and from all
     /// sides. Gives that, and the share of light from the ray's end.
-    fn march(
-        &self,
-        height_m: f64,
-        up: f64,
-        far: f64,
-        light: impl Fn(f64, f64) -> ([[f64; 2]; 3], Rgb),
-    ) -> (Rgb, Rgb) {
+    fn march(&self, height_m: f64, up: f64, far: f64, light: impl Fn(f64, f64) -> ([[f64; 2]; 3], Rgb)) -> (Rgb, Rgb) {
         let mut sum = [0.0; 3];
         let mut behind: Depth = [0.0; 3];
         let mut at = 0.0;
@@ -244,9 +238,8 @@ impl Air {
 }
 
 fn transmitted(dust: f64, depth: Depth) -> Rgb {
-    [0, 1, 2].map(|c: usize| {
-        libm::exp(-RAYLEIGH[c] * depth[0] - MIE * dust * SWALLOWED * depth[1] - OZONE[c] * depth[2])
-    })
+    [0, 1, 2]
+        .map(|c: usize| libm::exp(-RAYLEIGH[c] * depth[0] - MIE * dust * SWALLOWED * depth[1] - OZONE[c] * depth[2]))
 }
 
 /// What lies between a height and the end of the air; the Earth is not in the way.
@@ -416,9 +409,9 @@ mod tests {
             let sun = toward(altitude);
             let sky = SkyTable::new(&clear, &[(sun, SUN)]);
             let direct = clear.sunlight(sun);
-            for c in 0..3 {
-                let all = f64::from(sky.ambient[c]) + direct[c] * sun[2];
-                assert!(all < SUN * sun[2] && all > 0.4 * SUN * sun[2], "{altitude} {c}: {all}");
+            for (around, direct) in sky.ambient.into_iter().zip(direct) {
+                let all = f64::from(around) + direct * sun[2];
+                assert!(all < SUN * sun[2] && all > 0.4 * SUN * sun[2], "{altitude}: {all}");
             }
         }
     }

@@ -104,7 +104,11 @@ impl Camera {
 
     /// From the map's metres to the picture, for its width over its height.
     pub fn view_projection(&self, aspect: f64) -> DMat4 {
-        let lens = glam::dcamera::rh::proj::directx::perspective_infinite_reverse(self.view_deg.to_radians(), aspect, self.near_m());
+        let lens = glam::dcamera::rh::proj::directx::perspective_infinite_reverse(
+            self.view_deg.to_radians(),
+            aspect,
+            self.near_m(),
+        );
         lens * self.view()
     }
 
@@ -129,7 +133,13 @@ mod tests {
     use glam::DVec4;
 
     fn camera() -> Camera {
-        Camera { target: DVec3::new(100.0, -50.0, 10.0), from_deg: 200.0, down_deg: 30.0, distance_m: 900.0, view_deg: 40.0 }
+        Camera {
+            target: DVec3::new(100.0, -50.0, 10.0),
+            from_deg: 200.0,
+            down_deg: 30.0,
+            distance_m: 900.0,
+            view_deg: 40.0,
+        }
     }
 
     fn place(camera: &Camera, at: DVec3) -> DVec3 {

@@ -214,9 +214,15 @@ impl Frame {
                 scene.ground.relief,
             ]
             .map(|v| v as f32),
-            cover2: [cosine(scene.ground.snow_deg[0]), cosine(scene.ground.snow_deg[1]), style, quality].map(|v| v as f32),
-            bands: [0.65 * (snow_m - lie.sea_m), snow_m - lie.sea_m, 0.08 * (snow_m - lie.sea_m).abs(), 0.04 * lie.relief_m()]
-                .map(|v| (v * lie.exaggeration) as f32),
+            cover2: [cosine(scene.ground.snow_deg[0]), cosine(scene.ground.snow_deg[1]), style, quality]
+                .map(|v| v as f32),
+            bands: [
+                0.65 * (snow_m - lie.sea_m),
+                snow_m - lie.sea_m,
+                0.08 * (snow_m - lie.sea_m).abs(),
+                0.04 * lie.relief_m(),
+            ]
+            .map(|v| (v * lie.exaggeration) as f32),
             water: [
                 scene.water.clarity_m.unwrap_or(lie.clarity_m()) * lie.exaggeration,
                 scene.water.waves,
@@ -228,7 +234,8 @@ impl Frame {
             shallow: with(colour(&scene.water.light), f64::from(scene.water.octaves)),
             // Brightness is of the picture: what is white at the exposure.
             rays: [shafts, f64::from(u8::from(scene.sky.glare)) * lights.day, 0.0, 0.0].map(|v| v as f32),
-            bloom: [scene.bloom.threshold / exposure, 0.5 * scene.bloom.threshold / exposure, bloom, LEVELS as f64].map(|v| v as f32),
+            bloom: [scene.bloom.threshold / exposure, 0.5 * scene.bloom.threshold / exposure, bloom, LEVELS as f64]
+                .map(|v| v as f32),
             inland: [
                 f64::from(u8::from(scene.water.reflections && moment.quality == Quality::Full)),
                 scene.water.scale,

@@ -29,7 +29,11 @@ impl Copies {
     pub fn new(gpu: &Gpu, [width, height]: [u32; 2]) -> Self {
         let size = |k: usize| [(width >> (k + 1)).max(1), (height >> (k + 1)).max(1)];
         let levels = (0..LEVELS).take_while(|&k| k == 0 || size(k)[0].min(size(k)[1]) >= 4);
-        Self { levels: levels.map(|k| ["glow", "glow, half blurred"].map(|label| gpu.target(label, size(k), LIGHT, 1))).collect() }
+        Self {
+            levels: levels
+                .map(|k| ["glow", "glow, half blurred"].map(|label| gpu.target(label, size(k), LIGHT, 1)))
+                .collect(),
+        }
     }
 
     /// What is mixed into the picture.
@@ -41,20 +45,36 @@ impl Copies {
 impl Glow {
     pub fn new(gpu: &Gpu) -> Self {
         let layout = gpu.layout(&[Slot::Filtered, Slot::Sampler, Slot::Uniform]);
-        let pass = |shader, blend| gpu.pipeline(&Pass { shaders: ["cover", shader], groups: &[&layout], blend, ..Pass::default() });
-        let part = |src_factor, dst_factor| wgpu::BlendComponent { src_factor, dst_factor, operation: wgpu::BlendOperation::Add };
+        let pass = |shader, blend| {
+            gpu.pipeline(&Pass { shaders: ["cover", shader], groups: &[&layout], blend, ..Pass::default() })
+        };
+        let part = |src_factor, dst_factor| wgpu::BlendComponent {
+            src_factor,
+            dst_factor,
+            operation: wgpu::BlendOperation::Add,
+        };
         let sum = part(wgpu::BlendFactor::One, wgpu::BlendFactor::One);
         Self {
             shrink: pass("shrink", None),
             spread: pass("spread", None),
-            add: pass("spread", Some(wgpu::BlendState { color: sum, alpha: part(wgpu::BlendFactor::Zero, wgpu::BlendFactor::One) })),
+            add: pass(
+                "spread",
+                Some(wgpu::BlendState { color: sum, alpha: part(wgpu::BlendFactor::Zero, wgpu::BlendFactor::One) }),
+            ),
             sampler: gpu.sampler(wgpu::AddressMode::ClampToEdge, wgpu::AddressMode::ClampToEdge),
             layout,
         }
     }
 
     /// Spreads the light of a picture.
-    pub fn run(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, from: &Texture, copies: &Copies, [threshold, knee]: [f32; 2]) {
+    pub fn run(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        from: &Texture,
+        copies: &Copies,
+        [threshold, knee]: [f32; 2],
+    ) {
         let mut whole = Whole { encoder };
         let mut draw = |pipeline: &RenderPipeline, from: &Texture, to: &Texture, told: [f32; 4], over| {
             let uniform = gpu.buffer("glow", &told, wgpu::BufferUsages::UNIFORM);
@@ -82,7 +102,6 @@ impl Glow {
     }
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -101,9 +120,8 @@ mod tests {
 
     /// The red of what is left after a picture was spread.
     fn spread(gpu: &Gpu, size: [u32; 2], light: impl Fn(u32, u32) -> f32) -> Vec<f32> {
-        let pixels: Vec<[f16; 4]> = (0..size[0] * size[1])
-            .map(|i| [f16::from_f32(light(i % size[0], i / size[0])); 4])
-            .collect();
+        let pixels: Vec<[f16; 4]> =
+            (0..size[0] * size[1]).map(|i| [f16::from_f32(light(i % size[0], i / size[0])); 4]).collect();
         let picture = gpu.raster("picture", LIGHT, &[(size.map(|n| n as usize), pixels)]);
         let copies = Copies::new(gpu, size);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());

@@ -156,7 +156,13 @@ impl Gpu {
     }
 
     /// What a pass draws into.
-    pub(super) fn target(&self, label: &str, [width, height]: [u32; 2], format: TextureFormat, samples: u32) -> Texture {
+    pub(super) fn target(
+        &self,
+        label: &str,
+        [width, height]: [u32; 2],
+        format: TextureFormat,
+        samples: u32,
+    ) -> Texture {
         let more = match (samples, format.is_depth_stencil_format()) {
             (1, _) => TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
             (_, true) => TextureUsages::TEXTURE_BINDING,

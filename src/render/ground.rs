@@ -7,7 +7,7 @@ use super::{RenderError, cover::Covers, fire::with_molten, shade::sky_share};
 use crate::{
     grid::Field,
     scene::{SceneParams, Surround},
-    world::{Layer, World},
+    world::World,
 };
 
 /// How the map lies in the scene.
@@ -201,9 +201,4 @@ pub fn copies<T: Average>(size: [usize; 2], data: Vec<T>) -> Vec<([usize; 2], Ve
         all.push(([to_w, to_h], next));
     }
     all
-}
-
-/// Whether a world has any of a layer.
-pub(super) fn has(world: &World, layer: Layer) -> bool {
-    world.layer(layer).is_some_and(|field| field.data.iter().any(|&v| v > 0.0))
 }

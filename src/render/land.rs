@@ -16,7 +16,11 @@ use super::{
     terrain::Quadtree,
     water::Inland,
 };
-use crate::{grid::{Field, Grid}, scene::SceneParams, world::World};
+use crate::{
+    grid::{Field, Grid},
+    scene::SceneParams,
+    world::World,
+};
 use wgpu::TextureFormat;
 
 /// What the ground's shaders read, in the order of `shaders/lib/ground.wgsl`.
@@ -61,7 +65,12 @@ pub struct Land {
 }
 
 impl Land {
-    pub(super) fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, world: &World, scene: &SceneParams) -> Result<Self, RenderError> {
+    pub(super) fn new(
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        world: &World,
+        scene: &SceneParams,
+    ) -> Result<Self, RenderError> {
         gpu.check_size(&world.grid)?;
         let rasters = Rasters::new(world, scene)?;
         let size = [world.grid.width, world.grid.height];
@@ -75,7 +84,8 @@ impl Land {
         let state = gpu.raster("state", TextureFormat::Rgba8Unorm, &copies(size, rasters.state));
         let shade_on = coarse(&rasters.height, MOST_SHADE);
         let shade_size = [shade_on.grid.width, shade_on.grid.height];
-        let shade = gpu.raster("shade", TextureFormat::Rg16Float, &[(shade_size, vec![[f16::ZERO; 2]; shade_on.data.len()])]);
+        let shade =
+            gpu.raster("shade", TextureFormat::Rg16Float, &[(shade_size, vec![[f16::ZERO; 2]; shade_on.data.len()])]);
         let lava = if scene.lava.on { fire::lava(world) } else { None };
         let mut spread = Spread::new(&world.grid);
         lava.iter().for_each(|lava| spread.add_all(&world.grid, lava));
@@ -125,7 +135,8 @@ impl Land {
         }
         let shade = sweep(&self.shade_on, self.lie.exaggeration, toward.to_array());
         // Far more than any relief, and small enough for half floats.
-        let data: Vec<[f16; 2]> = shade.iter().map(|s| [s[0].clamp(-6e4, 6e4), s[1].min(6e4)].map(f16::from_f32)).collect();
+        let data: Vec<[f16; 2]> =
+            shade.iter().map(|s| [s[0].clamp(-6e4, 6e4), s[1].min(6e4)].map(f16::from_f32)).collect();
         gpu.write(&self.shade, (0, 0), [self.shade_on.grid.width, self.shade_on.grid.height], &data);
         self.lit_from = Some(toward);
     }

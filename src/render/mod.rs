@@ -10,8 +10,8 @@
 mod air;
 mod camera;
 mod cover;
-mod fire;
 mod drape;
+mod fire;
 mod frame;
 mod glow;
 mod gpu;

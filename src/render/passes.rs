@@ -132,11 +132,8 @@ impl Gpu {
             bind_group_layouts: &groups,
             ..Default::default()
         });
-        let target = wgpu::ColorTargetState {
-            format: pass.format,
-            blend: pass.blend,
-            write_mask: wgpu::ColorWrites::ALL,
-        };
+        let target =
+            wgpu::ColorTargetState { format: pass.format, blend: pass.blend, write_mask: wgpu::ColorWrites::ALL };
         let topology =
             if pass.strip { wgpu::PrimitiveTopology::TriangleStrip } else { wgpu::PrimitiveTopology::TriangleList };
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {

@@ -2,7 +2,9 @@
 //! any number of pictures of them.
 
 use image::RgbImage;
-use wgpu::{AddressMode, BindGroup, BindGroupLayout, BindingResource, RenderPipeline, Texture, TextureFormat, VertexFormat};
+use wgpu::{
+    AddressMode, BindGroup, BindGroupLayout, BindingResource, RenderPipeline, Texture, TextureFormat, VertexFormat,
+};
 
 use super::{
     Gpu, RenderError,
@@ -157,7 +159,13 @@ impl Renderer {
     }
 
     /// The picture, in the adapter's memory; valid until the next one.
-    pub fn draw(&mut self, land: &mut Land, scene: &SceneParams, camera: &Camera, moment: &Moment) -> Result<&Texture, RenderError> {
+    pub fn draw(
+        &mut self,
+        land: &mut Land,
+        scene: &SceneParams,
+        camera: &Camera,
+        moment: &Moment,
+    ) -> Result<&Texture, RenderError> {
         let [width, height] = moment.size;
         let most = self.gpu.device.limits().max_texture_dimension_2d.min(MOST_PX);
         if width == 0 || height == 0 || width.max(height) > most {
@@ -205,11 +213,18 @@ impl Renderer {
     }
 
     /// The picture as a file has it.
-    pub fn picture(&mut self, land: &mut Land, scene: &SceneParams, camera: &Camera, moment: &Moment) -> Result<RgbImage, RenderError> {
+    pub fn picture(
+        &mut self,
+        land: &mut Land,
+        scene: &SceneParams,
+        camera: &Camera,
+        moment: &Moment,
+    ) -> Result<RgbImage, RenderError> {
         let texture = self.draw(land, scene, camera, moment)?.clone();
         let pixels = self.gpu.read_pixels(&texture)?;
         let rgb = pixels.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-        RgbImage::from_raw(moment.size[0], moment.size[1], rgb).ok_or_else(|| self.gpu.failed("half a picture came back"))
+        RgbImage::from_raw(moment.size[0], moment.size[1], rgb)
+            .ok_or_else(|| self.gpu.failed("half a picture came back"))
     }
 
     /// The sky of the moment, made anew where it has changed.
@@ -259,10 +274,13 @@ impl Renderer {
                 Quality::Full => 6.0,
             },
         };
-        let patches = land.tree.select(&seen); if std::env::var("LIVE_SHADERS").is_ok() { eprintln!("patches {}", patches.len()); } // DEV-ONLY
+        let patches = land.tree.select(&seen);
         let patch_buffer = gpu.buffer("patches", &patches, wgpu::BufferUsages::VERTEX);
-        let wet: Vec<Patch> =
-            patches.iter().filter(|patch| land.inland.as_ref().is_some_and(|inland| inland.touches(patch))).copied().collect();
+        let wet: Vec<Patch> = patches
+            .iter()
+            .filter(|patch| land.inland.as_ref().is_some_and(|inland| inland.touches(patch)))
+            .copied()
+            .collect();
         let wet_count = wet.len() as u32;
         let wet_buffer = (wet_count > 0).then(|| gpu.buffer("wet patches", &wet, wgpu::BufferUsages::VERTEX));
         let set = &self.sets[moment.quality as usize];
@@ -273,7 +291,8 @@ impl Renderer {
             Surround::Block => false,
         };
         let many = targets.samples > 1;
-        let smoke = (!puffs.is_empty()).then(|| (gpu.buffer("smoke", puffs, wgpu::BufferUsages::VERTEX), puffs.len() as u32));
+        let smoke =
+            (!puffs.is_empty()).then(|| (gpu.buffer("smoke", puffs, wgpu::BufferUsages::VERTEX), puffs.len() as u32));
         let lumps = land.lumps().filter(|_| scene.lava.on).unwrap_or_default();
         let corners = lumps::corners(lumps, &land.lie, !scene.lava.spheres);
         let shown = self.lumps.make(gpu, &mut encoder, &frame_group, targets.felt.as_ref(), &corners, &seen.matrix);

@@ -15,8 +15,9 @@ pub(super) struct Sea {
 impl Sea {
     pub fn new(gpu: &Gpu) -> Self {
         let corner = |east: f64, north: f64, around: f32| [east as f32, north as f32, around];
-        let square: Vec<_> =
-            [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)].map(|(x, y)| corner(x, y, 0.0)).into();
+        let square: Vec<_> = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)]
+            .map(|(x, y)| corner(x, y, 0.0))
+            .into();
         let mut rings = Vec::new();
         let at = |ring: usize, k: usize| {
             let turn = k as f64 / CORNERS as f64 * std::f64::consts::TAU;

@@ -29,7 +29,6 @@ pub(super) const ENTRIES: &[(&str, &str)] = sources!("":
 pub(super) fn source(name: &str) -> String {
     // What is not there fails where it is compiled.
     let text = ENTRIES.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text);
-    if let Ok(dir) = std::env::var("LIVE_SHADERS") { return live(&dir, name); } // DEV-ONLY
     expanded(text)
 }
 
@@ -40,15 +39,6 @@ pub(super) fn expanded(text: &'static str) -> String {
     out
 }
 
-// DEV-ONLY
-fn live(dir: &str, name: &str) -> String { // DEV-ONLY
-    fn go(dir: &str, path: String, taken: &mut Vec<String>, out: &mut String) { // DEV-ONLY
-        for line in std::fs::read_to_string(&path).unwrap().lines() { // DEV-ONLY
-            if let Some(n) = line.strip_prefix("#import ") { if !taken.contains(&n.to_string()) { taken.push(n.into()); go(dir, format!("{dir}/lib/{n}.wgsl"), taken, out); } } else { out.push_str(line); out.push('\n'); } // DEV-ONLY
-        } // DEV-ONLY
-    } // DEV-ONLY
-    let mut out = String::new(); go(dir, format!("{dir}/{name}.wgsl"), &mut vec![], &mut out); out // DEV-ONLY
-} // DEV-ONLY
 fn expand(text: &'static str, taken: &mut Vec<&'static str>, out: &mut String) {
     for line in text.lines() {
         let Some(name) = line.strip_prefix("#import ") else {
@@ -131,8 +121,29 @@ mod tests {
             }};
         }
         same!(
-            view_projection, from_picture, eye, toward, light, sun, moon, ambient, map, haze, air, picture, cover, cover2,
-            bands, water, dark, shallow, bloom, rays, inland, lava, heat
+            view_projection,
+            from_picture,
+            eye,
+            toward,
+            light,
+            sun,
+            moon,
+            ambient,
+            map,
+            haze,
+            air,
+            picture,
+            cover,
+            cover2,
+            bands,
+            water,
+            dark,
+            shallow,
+            bloom,
+            rays,
+            inland,
+            lava,
+            heat
         );
     }
 }

@@ -167,7 +167,10 @@ pub fn indices() -> Vec<u16> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{grid::{Edges, Grid}, render::camera::Camera};
+    use crate::{
+        grid::{Edges, Grid},
+        render::camera::Camera,
+    };
 
     fn tree(width: usize, height: usize) -> Quadtree {
         let grid = Grid::new(width, height, width as f64 * 10.0, Edges::Open);
@@ -231,7 +234,13 @@ mod tests {
     #[test]
     fn edges_meet() {
         let tree = tree(1024, 1024);
-        let camera = Camera { target: DVec3::new(500.0, -300.0, 20.0), from_deg: 30.0, down_deg: 25.0, distance_m: 700.0, view_deg: 50.0 };
+        let camera = Camera {
+            target: DVec3::new(500.0, -300.0, 20.0),
+            from_deg: 30.0,
+            down_deg: 25.0,
+            distance_m: 700.0,
+            view_deg: 50.0,
+        };
         let all = Seen { matrix: DMat4::ZERO, most_px: 40.0, ..seen(&camera) };
         let patches = tree.select(&all);
         assert!(patches.iter().any(|p| p.patch[3] == 0.0) && patches.iter().any(|p| p.patch[3] >= 2.0));

@@ -175,7 +175,8 @@ fn the_side_in_shade_is_darker_and_night_is_darker_than_day() {
             let mut land = renderer.land(&world, &scene).unwrap();
             renderer.picture(&mut land, &scene, &top, &moment([128, 128], quality)).unwrap()
         };
-        let sides = |picture: &image::RgbImage| [brightness(picture, 50..60, 40..90), brightness(picture, 68..78, 40..90)];
+        let sides =
+            |picture: &image::RgbImage| [brightness(picture, 50..60, 40..90), brightness(picture, 68..78, 40..90)];
         let [west, east] = sides(&draw(Some(270.0), 25.0));
         assert!(west > 1.5 * east, "{quality:?}: {west} {east}");
         let [west, east] = sides(&draw(Some(90.0), 25.0));

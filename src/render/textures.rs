@@ -103,7 +103,8 @@ fn lattice(x: usize, y: usize, length: usize, seed: u32) -> f32 {
 }
 
 fn hash(x: usize, y: usize, seed: u32) -> f32 {
-    let mut h = (x as u32).wrapping_mul(0x9E37_79B1) ^ (y as u32).wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
+    let mut h =
+        (x as u32).wrapping_mul(0x9E37_79B1) ^ (y as u32).wrapping_mul(0x85EB_CA77) ^ seed.wrapping_mul(0xC2B2_AE3D);
     h = (h ^ (h >> 15)).wrapping_mul(0x2C1B_3C6D);
     h = (h ^ (h >> 12)).wrapping_mul(0x297A_2D39);
     ((h ^ (h >> 15)) >> 8) as f32 / 16_777_216.0
@@ -123,7 +124,11 @@ mod tests {
             }
             // Across the seam neighbours differ no more than elsewhere.
             let row = |y: usize| {
-                (0..SIDE).map(|x| (f32::from(texels[y * SIDE + x][2]) - f32::from(texels[((y + 1) % SIDE) * SIDE + x][2])).abs()).sum::<f32>()
+                (0..SIDE)
+                    .map(|x| {
+                        (f32::from(texels[y * SIDE + x][2]) - f32::from(texels[((y + 1) % SIDE) * SIDE + x][2])).abs()
+                    })
+                    .sum::<f32>()
             };
             let inside = (0..SIDE - 1).map(row).sum::<f32>() / (SIDE - 1) as f32;
             assert!(row(SIDE - 1) < 1.5 * inside);
