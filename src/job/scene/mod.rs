@@ -44,7 +44,7 @@ pub(super) fn still(
 }
 
 /// How far away the whole block is seen, in longer sides of the map.
-const WHOLE_SIDES: f64 = 2.1;
+const WHOLE_SIDES: f64 = 1.9;
 
 /// Takes out of a scene what would hide a map's colours: the sea's floor and the beds of lakes have some, too.
 pub(crate) fn dry(scene: &mut SceneParams) {
