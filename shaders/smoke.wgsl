@@ -22,13 +22,14 @@ const SIDE: f32 = 128.0;
 
 @fragment
 fn main(in: Vertex) -> @location(0) vec4<f32> {
-    if (dot(in.place, in.place) > 1.0) { discard; }
     let uv = in.place * vec2<f32>(0.5, -0.5) + 0.5;
     let layer = floor(in.state.w);
     let level = floor(max(log2(0.5 * SIDE / in.state.x), 0.0));
-    let a = textureSampleLevel(puffs, smooth_clamp, uv, i32(layer), level);
-    let b = textureSampleLevel(puffs, smooth_clamp, uv, i32((layer + 1.0) % LAYERS), level);
-    let t = mix(a, b, in.state.w - layer);
+    var t = textureSampleLevel(puffs, smooth_clamp, uv, i32(layer), level);
+    if (QUALITY > 0u) {
+        let next = textureSampleLevel(puffs, smooth_clamp, uv, i32((layer + 1.0) % LAYERS), level);
+        t = mix(t, next, in.state.w - layer);
+    }
     // Old smoke is torn where it is thin.
     let torn = 0.30 * in.state.z;
     let whole = clamp((t.a - torn) / (1.0 - torn), 0.0, 0.995);

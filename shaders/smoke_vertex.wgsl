@@ -2,7 +2,7 @@
 #import haze
 #import fire
 
-// A puff of smoke as a square that faces the eye, and all that is the same over the whole of it: light, haze, its axes.
+// A puff of smoke as an octagon that faces the eye, and all that is the same over the whole of it: light, haze, its axes.
 
 struct Puff {
     @builtin(vertex_index) corner: u32,
@@ -16,7 +16,7 @@ struct Puff {
 
 struct Vertex {
     @builtin(position) position: vec4<f32>,
-    // Place, and what of the square's radius it lies over the ground.
+    // Place, and its radius if that reaches down to the ground, else 0.
     @location(0) at: vec4<f32>,
     @location(1) place: vec2<f32>,
     // Radius in pixels, thickness, share of its life that is over, picture.
@@ -32,14 +32,17 @@ struct Vertex {
     @location(9) @interpolate(flat) veil: vec3<f32>,
 }
 
+// Nothing of a puff's picture lies beyond this share of its radius.
+const REACH: f32 = 0.87;
 const FRESH: vec3<f32> = vec3<f32>(0.085, 0.078, 0.072);
 const OLD: vec3<f32> = vec3<f32>(0.54, 0.53, 0.52);
 
 @vertex
 fn main(in: Puff) -> Vertex {
-    // Two triangles: corners 0 1 2 and 2 1 3.
-    let corner = select(in.corner, array<u32, 3>(2u, 1u, 3u)[in.corner % 3u], in.corner > 2u);
-    let side = vec2<f32>(f32(corner & 1u), f32(corner >> 1u)) * 2.0 - 1.0;
+    // Six triangles around the first corner.
+    let corner = select(0u, in.corner / 3u + in.corner % 3u, in.corner % 3u > 0u);
+    let angle = (f32(corner) + 0.5) * 0.25 * PI;
+    let side = vec2<f32>(cos(angle), sin(angle)) * (REACH / cos(0.125 * PI));
     let way = in.ball.xyz - frame.eye.xyz;
     let away = max(length(way), 1e-3);
     let forward = way / away;

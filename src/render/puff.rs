@@ -168,6 +168,9 @@ mod tests {
             assert!(
                 (0..SIDE).all(|k| [at(k, 0), at(0, k), at(k, SIDE - 1), at(SIDE - 1, k)].iter().all(|t| t[3] == 0))
             );
+            // Beyond what the shader draws there is nothing.
+            let out = |k: usize| (k as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0;
+            assert!((0..SIDE * SIDE).all(|i| all[i][3] < 2 || libm::hypotf(out(i % SIDE), out(i / SIDE)) < 0.87));
             // It is no disc: along a circle it comes and goes.
             let ring = (0..64).map(|k| {
                 let (sin, cos) = libm::sincos(f64::from(k) / 64.0 * std::f64::consts::TAU);

@@ -18,6 +18,8 @@ const YEAR_S: f64 = 365.25 * 86_400.0;
 const PICTURES: f64 = 3.0;
 /// Optical depth of a fresh puff's middle.
 const THICK: f64 = 1.6;
+/// Corners of the six triangles of an octagon.
+const CORNERS: u32 = 18;
 /// Most puffs that are asked whether they stand in another's light.
 const ASKED: usize = 600;
 
@@ -155,6 +157,7 @@ impl Smoke {
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                 depth: Some(false),
                 samples,
+                constants: &[("QUALITY", if samples == 1 { 0.0 } else { 2.0 })],
                 ..Pass::default()
             })
         });
@@ -179,7 +182,7 @@ impl Smoke {
         pass.set_pipeline(&self.pipelines[usize::from(many)]);
         pass.set_bind_group(2, look, &[]);
         pass.set_vertex_buffer(0, puffs.slice(..));
-        pass.draw(0..6, 0..count);
+        pass.draw(0..CORNERS, 0..count);
     }
 }
 
