@@ -44,11 +44,11 @@ pub struct Frame {
 }
 
 /// Irradiance of full moonlight in the units of the sun: far more than nature's four millionths, as a long exposure has it.
-const MOON: f64 = 0.012;
+const MOON: f64 = 0.03;
 /// Brightness of a night sky without a moon.
-const AIRGLOW: f64 = 0.0009;
+const AIRGLOW: f64 = 0.0018;
 /// Exposure that shows a sunlit lawn as the eye does.
-const EXPOSURE: f64 = 0.55;
+const EXPOSURE: f64 = 0.72;
 
 /// Light of the white of a picture of the sky.
 const WHITE: f64 = 3.0;
