@@ -116,14 +116,18 @@ fn main(in: Vertex) -> @location(0) vec4<f32> {
     if (QUALITY > 0u) { surface = covered(in.at, in.uv, normal, state, away, mip); }
     // A map's colours are draped over the land as they are.
     let draped = frame.cover2.z == 3.0;
+    var dry = 0.0;
     if (draped) { surface = Surface(textureSampleLevel(cover_map, smooth_clamp, in.uv, mip).rgb, normal); }
-    var lava = lava_at(in.at, in.uv, normal, away, state.r);
-    if (draped) { lava.share = 0.0; lava.light = vec3<f32>(0.0); }
-    surface.albedo = mix(surface.albedo, lava.albedo, lava.share);
-    surface.normal = normalize(mix(surface.normal, lava.normal, lava.share));
     let sun = sun_share(in.uv, 0.0);
-    var colour = lit(surface.albedo, surface.normal, state.a, sun);
-    colour += surface.albedo * (1.0 / PI) * fire_light(in.uv, surface.normal) + lava.light;
-    colour = mix(with_river(colour, in.at, in.uv, slope, sun), colour, select(lava.share, 1.0, draped));
+    var light = vec3<f32>(0.0);
+    if (FIRE && !draped) {
+        let lava = lava_at(in.at, in.uv, normal, away, state.r);
+        surface.albedo = mix(surface.albedo, lava.albedo, lava.share);
+        surface.normal = normalize(mix(surface.normal, lava.normal, lava.share));
+        light = surface.albedo * (1.0 / PI) * fire_light(in.uv, surface.normal) + lava.light;
+        dry = lava.share;
+    }
+    var colour = lit(surface.albedo, surface.normal, state.a, sun) + light;
+    if (RIVERS && !draped) { colour = mix(with_river(colour, in.at, in.uv, slope, sun), colour, dry); }
     return vec4<f32>(hazed(colour, in.at), 1.0);
 }

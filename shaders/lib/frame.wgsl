@@ -51,6 +51,9 @@ struct Frame {
 // How carefully is drawn: 0 draft, 1 normal, 2 full. Every quality has pipelines of its own, since a processor that draws
 // runs both ways of every branch.
 override QUALITY: u32 = 2u;
+// Whether the world has lava, and rivers.
+override FIRE: bool = true;
+override RIVERS: bool = true;
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var sky_table: texture_2d<f32>;

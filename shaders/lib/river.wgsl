@@ -29,6 +29,10 @@ fn with_river(colour: vec3<f32>, at: vec3<f32>, uv: vec2<f32>, slope: vec2<f32>,
     let pixel = away * frame.eye.w;
     let share = river_share(uv, pixel);
     if (share <= 0.003) { return colour; }
+    let down = frame.light.rgb * (max(frame.toward.z, 0.0) * sun) + frame.ambient.rgb;
+    let clear = mix(frame.dark.rgb * DEEP, frame.shallow.rgb, 0.16) * FRESH;
+    let own = mix(clear, MUD, 0.25);
+    if (QUALITY == 0u) { return mix(colour, (own + 0.05) * down / PI, share); }
     let view = (frame.eye.xyz - at) / away;
     // Ripples go with the stream: down the valley.
     let fall = -slope / max(length(slope), 1e-3);
@@ -42,9 +46,6 @@ fn with_river(colour: vec3<f32>, at: vec3<f32>, uv: vec2<f32>, slope: vec2<f32>,
     let mirror = fresnel(facing, sqrt(2.0 * rest));
     var ray = reflect(-view, normal);
     ray = normalize(vec3<f32>(ray.xy, max(ray.z, 0.0) + 0.12));
-    let down = frame.light.rgb * (max(frame.toward.z, 0.0) * sun) + frame.ambient.rgb;
-    let clear = mix(frame.dark.rgb * DEEP, frame.shallow.rgb, 0.16) * FRESH;
-    let own = mix(clear, MUD, 0.25);
     var shown = own * down * ((1.0 - mirror) / PI) + sky_light(ray) * mirror;
     shown += glitter(view, ripple, rest, pixel) * sun;
     return mix(colour, shown, share);

@@ -142,6 +142,7 @@ fn surf(water: Water, pixel: f32) -> f32 {
 
 // All of it, in haze.
 fn watered(water: Water, pixel: f32, view: vec3<f32>) -> vec3<f32> {
+    if (QUALITY == 0u) { return plain_water(water, pixel, view); }
     let wave = waves(water.at.xy, pixel, water.height, water.longest);
     let normal = normalize(vec3<f32>(-wave.slope, 1.0));
     let facing = clamp(dot(normal, view), 0.03, 1.0);

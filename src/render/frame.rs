@@ -44,9 +44,9 @@ pub struct Frame {
 }
 
 /// Irradiance of full moonlight in the units of the sun: far more than nature's four millionths, as a long exposure has it.
-const MOON: f64 = 0.03;
+const MOON: f64 = 0.02;
 /// Brightness of a night sky without a moon.
-const AIRGLOW: f64 = 0.0018;
+const AIRGLOW: f64 = 0.0014;
 /// Exposure that shows a sunlit lawn as the eye does.
 const EXPOSURE: f64 = 0.72;
 

@@ -47,6 +47,10 @@ pub struct Land {
     pub(super) walls: wgpu::Buffer,
     pub(super) wall_corners: u32,
     pub(super) inland: Option<Inland>,
+    /// Whether there are rivers to be drawn.
+    pub(super) rivers: bool,
+    /// Whether the map has lava, molten or frozen.
+    lava: bool,
     /// What covers the ground, and whether that is a map's colours.
     pub(super) cover: wgpu::Texture,
     pub(super) draped: bool,
@@ -87,6 +91,7 @@ impl Land {
         let shade =
             gpu.raster("shade", TextureFormat::Rg16Float, &[(shade_size, vec![[f16::ZERO; 2]; shade_on.data.len()])]);
         let lava = if scene.lava.on { fire::lava(world) } else { None };
+        let has_lava = lava.is_some();
         let mut spread = Spread::new(&world.grid);
         lava.iter().for_each(|lava| spread.add_all(&world.grid, lava));
         let (spread_size, spread) = (spread.size(), spread.spread());
@@ -101,6 +106,7 @@ impl Land {
         let water = gpu.raster("water", TextureFormat::Rg32Float, &levels);
         let most = gpu.device.limits().max_texture_dimension_2d as usize;
         let rivers = scene.water.inland.then(|| Rivers::of(world, &rasters.lie, most)).flatten();
+        let has_rivers = rivers.is_some();
         let levels = rivers.map_or_else(|| vec![([1, 1], vec![[0; 2]])], |rivers| copies(rivers.size, rivers.texels));
         let rivers = gpu.raster("rivers", TextureFormat::Rg8Unorm, &levels);
         let views = [&heights, &slopes, &cover, &state, &shade, &glow, &water, &rivers, &fire].map(view);
@@ -113,6 +119,8 @@ impl Land {
             walls: gpu.buffer("walls", &corners, wgpu::BufferUsages::VERTEX),
             wall_corners: corners.len() as u32,
             inland,
+            rivers: has_rivers,
+            lava: has_lava,
             cover,
             draped: false,
             height: rasters.height,
@@ -145,6 +153,11 @@ impl Land {
     pub fn set_lumps(&mut self, lumps: Option<Vec<Lump>>) {
         self.unlit |= lumps.is_some() || self.lumps.is_some();
         self.lumps = lumps;
+    }
+
+    /// Whether there is lava to be drawn.
+    pub(super) fn burns(&self) -> bool {
+        self.lava || self.lumps().is_some_and(|lumps| !lumps.is_empty())
     }
 
     /// The particles.

@@ -28,6 +28,7 @@ mod puff;
 mod renderer;
 mod rivers;
 mod sea;
+mod set;
 mod shade;
 mod shader;
 mod shafts;

@@ -1,10 +1,10 @@
 //! One renderer for files, films and windows: it owns pipelines and textures, takes a world's rasters once and draws
 //! any number of pictures of them.
 
+use std::collections::BTreeMap;
+
 use image::RgbImage;
-use wgpu::{
-    AddressMode, BindGroup, BindGroupLayout, BindingResource, RenderPipeline, Texture, TextureFormat, VertexFormat,
-};
+use wgpu::{AddressMode, BindGroup, BindGroupLayout, BindingResource, RenderPipeline, Texture, TextureFormat};
 
 use super::{
     Gpu, RenderError,
@@ -17,6 +17,7 @@ use super::{
     lumps::{self, Felt, Lumps},
     passes::{DEPTH, LIGHT, Pass, Slot, Whole, view},
     sea::Sea,
+    set::{Kind, Set},
     shafts::{Halves, Shafts},
     smoke::{self, Smoke},
     terrain::{self, Patch, Seen},
@@ -29,8 +30,6 @@ use crate::{
 
 /// Format of pictures: sRGB, eight bits.
 const PICTURE: TextureFormat = TextureFormat::Rgba8UnormSrgb;
-/// Samples a pixel for draft, normal and full quality: edges are smooth in the latter two.
-const SAMPLES: [u32; 3] = [1, 4, 4];
 /// Most pixels of a side of a picture, besides the adapter's own limit.
 const MOST_PX: u32 = 16_384;
 
@@ -38,12 +37,13 @@ const MOST_PX: u32 = 16_384;
 pub struct Renderer {
     gpu: Gpu,
     ground_layout: BindGroupLayout,
+    cover_layout: BindGroupLayout,
     frame_layout: BindGroupLayout,
     tone_layout: BindGroupLayout,
     covers: BindGroup,
     samplers: [wgpu::Sampler; 3],
-    /// Pipelines for draft, normal and full quality.
-    sets: [Set; 3],
+    /// The picture's pipelines, made when they are first needed.
+    sets: BTreeMap<Kind, Set>,
     tone: RenderPipeline,
     glow: Glow,
     lumps: Lumps,
@@ -55,16 +55,6 @@ pub struct Renderer {
     air: Option<(f64, Air)>,
     sky: Option<SkyTexture>,
     targets: Option<Targets>,
-}
-
-/// The pipelines of the picture itself.
-struct Set {
-    ground: RenderPipeline,
-    side: RenderPipeline,
-    backdrop: RenderPipeline,
-    sea: RenderPipeline,
-    sea_side: RenderPipeline,
-    lake: RenderPipeline,
 }
 
 struct SkyTexture {
@@ -112,7 +102,6 @@ impl Renderer {
         let ground_layout = gpu.layout(&GROUND);
         let cover_layout = gpu.layout(&[Slot::Layers]);
         let tone_layout = gpu.layout(&[Slot::Numbers, Slot::Filtered, Slot::Numbers, Slot::Numbers]);
-        let sets = [0, 1, 2].map(|quality| Set::new(&gpu, quality, [&frame_layout, &ground_layout, &cover_layout]));
         let tone = gpu.pipeline(&Pass {
             shaders: ["cover", "tone"],
             groups: &[&frame_layout, &tone_layout],
@@ -128,7 +117,7 @@ impl Renderer {
         let (clamp, repeat) = (AddressMode::ClampToEdge, AddressMode::Repeat);
         Ok(Self {
             samplers: [gpu.sampler(clamp, clamp), gpu.sampler(repeat, repeat), gpu.sampler(repeat, clamp)],
-            sets,
+            sets: BTreeMap::new(),
             tone,
             glow: Glow::new(&gpu),
             lumps: Lumps::new(&gpu, [&frame_layout, &ground_layout]),
@@ -139,6 +128,7 @@ impl Renderer {
             sea: Sea::new(&gpu),
             covers,
             ground_layout,
+            cover_layout,
             frame_layout,
             tone_layout,
             air: None,
@@ -171,7 +161,8 @@ impl Renderer {
         if width == 0 || height == 0 || width.max(height) > most {
             return Err(RenderError::PictureSize { width, height, most });
         }
-        let samples = SAMPLES[moment.quality as usize];
+        let kind = Kind { quality: moment.quality as usize, fire: land.burns(), rivers: land.rivers };
+        let samples = kind.samples();
         if self.targets.as_ref().is_none_or(|t| t.size != moment.size || t.samples != samples) {
             self.targets = None;
             self.targets = Some(self.gpu.checked(|| Ok(Targets::new(&self.gpu, moment.size, samples)))?);
@@ -184,6 +175,11 @@ impl Renderer {
             };
         }
         self.look_up(scene, moment)?;
+        if !self.sets.contains_key(&kind) {
+            let layouts = [&self.frame_layout, &self.ground_layout, &self.cover_layout];
+            let set = self.gpu.checked(|| Ok(Set::new(&self.gpu, kind, layouts)))?;
+            self.sets.insert(kind, set);
+        }
         let every = if moment.quality == Quality::Draft { 2 } else { 1 };
         let look = smoke::Look { density: scene.smoke.density, every };
         let puffs = match &self.sky {
@@ -195,7 +191,7 @@ impl Renderer {
         if !puffs.is_empty() {
             self.smoke.prepare(&self.gpu);
         }
-        let (Some(sky), Some(targets)) = (&self.sky, &self.targets) else {
+        let (Some(sky), Some(targets), Some(set)) = (&self.sky, &self.targets, self.sets.get(&kind)) else {
             return Err(self.gpu.failed("its targets are gone"));
         };
         self.gpu.checked(|| {
@@ -206,7 +202,7 @@ impl Renderer {
             if land.draped {
                 frame.cover2[2] = DRAPED;
             }
-            self.encode(land, scene, camera, moment, &frame, (sky, targets, &puffs));
+            self.encode(land, scene, camera, moment, &frame, (sky, targets, set, &puffs));
             Ok(())
         })?;
         Ok(&targets.picture)
@@ -255,7 +251,7 @@ impl Renderer {
         camera: &Camera,
         moment: &Moment,
         frame: &Frame,
-        (sky, targets, puffs): (&SkyTexture, &Targets, &[smoke::Corner]),
+        (sky, targets, set, puffs): (&SkyTexture, &Targets, &Set, &[smoke::Corner]),
     ) {
         let gpu = &self.gpu;
         let uniform = gpu.buffer("frame", std::slice::from_ref(frame), wgpu::BufferUsages::UNIFORM);
@@ -283,7 +279,6 @@ impl Renderer {
             .collect();
         let wet_count = wet.len() as u32;
         let wet_buffer = (wet_count > 0).then(|| gpu.buffer("wet patches", &wet, wgpu::BufferUsages::VERTEX));
-        let set = &self.sets[moment.quality as usize];
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let around = match scene.surround {
             Surround::Auto => land.lie.rim_at_sea,
@@ -371,75 +366,4 @@ impl Renderer {
 fn open_sky(file: &str) -> Result<RgbImage, RenderError> {
     let picture = crate::world::open_picture(std::path::Path::new(file));
     Ok(picture.map_err(|e| RenderError::Picture(e.to_string()))?.to_rgb8())
-}
-
-impl Set {
-    fn new(gpu: &Gpu, quality: usize, [frame, ground, covers]: [&BindGroupLayout; 3]) -> Self {
-        let samples = SAMPLES[quality];
-        let constants = &[("QUALITY", quality as f64)];
-        let attribute = |location, offset, format| wgpu::VertexAttribute { format, offset, shader_location: location };
-        let on_patches = [attribute(0, 0, VertexFormat::Float32x4), attribute(1, 16, VertexFormat::Float32x4)];
-        let patches = || wgpu::VertexBufferLayout {
-            array_stride: size_of::<Patch>() as u64,
-            step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &on_patches,
-        };
-        let on_walls = [attribute(0, 0, VertexFormat::Float32x4)];
-        let walls = || wgpu::VertexBufferLayout {
-            array_stride: 16,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &on_walls,
-        };
-        let corners = [attribute(0, 0, VertexFormat::Float32x2), attribute(1, 8, VertexFormat::Float32)];
-        let corners = wgpu::VertexBufferLayout {
-            array_stride: 12,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &corners,
-        };
-        let water = |shaders, vertices: wgpu::VertexBufferLayout, strip| {
-            gpu.pipeline(&Pass {
-                shaders,
-                groups: &[frame, ground],
-                vertices: &[Some(vertices)],
-                strip,
-                blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-                depth: Some(true),
-                samples,
-                constants,
-                ..Pass::default()
-            })
-        };
-        Self {
-            ground: gpu.pipeline(&Pass {
-                shaders: ["ground_vertex", "ground"],
-                groups: &[frame, ground, covers],
-                vertices: &[Some(patches())],
-                depth: Some(true),
-                samples,
-                constants,
-                ..Pass::default()
-            }),
-            side: gpu.pipeline(&Pass {
-                shaders: ["side_vertex", "side"],
-                groups: &[frame, ground],
-                vertices: &[Some(walls())],
-                strip: true,
-                depth: Some(true),
-                samples,
-                constants,
-                ..Pass::default()
-            }),
-            backdrop: gpu.pipeline(&Pass {
-                shaders: ["cover", "backdrop"],
-                groups: &[frame],
-                depth: Some(false),
-                samples,
-                constants,
-                ..Pass::default()
-            }),
-            sea: water(["sea_vertex", "sea"], corners, false),
-            sea_side: water(["sea_side_vertex", "sea_side"], walls(), true),
-            lake: water(["lake_vertex", "lake"], patches(), false),
-        }
-    }
 }
