@@ -140,6 +140,19 @@ fn surf(water: Water, pixel: f32) -> f32 {
     return clamp((0.75 * lines * near + 0.7 * wash) * frame.water.w, 0.0, 0.92) * water.sea;
 }
 
+// For drafts: without a wave of its own, as rough as all of them are.
+fn plain_water(water: Water, pixel: f32, view: vec3<f32>) -> vec3<f32> {
+    let rest = 0.0008 + 0.004 * water.height;
+    let roughness = sqrt(2.0 * rest);
+    let facing = clamp(view.z, 0.03, 1.0);
+    let share = fresnel(facing, roughness);
+    let reflected = sky_light(normalize(vec3<f32>(-view.xy, facing + 0.9 * roughness)));
+    let down = frame.light.rgb * (max(frame.toward.z, 0.0) * water.sun) + frame.ambient.rgb;
+    var colour = body(water, facing) * down * ((1.0 - share) / PI) + reflected * share;
+    colour += glitter(view, vec2<f32>(0.0), rest, pixel) * water.sun;
+    return hazed(colour, water.at);
+}
+
 // All of it, in haze.
 fn watered(water: Water, pixel: f32, view: vec3<f32>) -> vec3<f32> {
     if (QUALITY == 0u) { return plain_water(water, pixel, view); }

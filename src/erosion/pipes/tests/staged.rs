@@ -34,9 +34,11 @@ fn the_velocity_shown_is_that_of_the_greatest_speed() {
         let (v, e, s) = (speed.data[i], east.data[i], south.data[i]);
         // Products of single precision.
         assert!(v > 0.05 && (v - (e * e + s * s).sqrt()).abs() < 1e-5 * v, "{i}: {v} of {e} and {s}");
-        // The plane falls four times as steeply to the east as to the south.
-        assert!(e > s && s > 0.0, "{i}: water runs down the plane, {e} {s}");
+        assert!(e > 0.0 && s > 0.0, "{i}: water runs down the plane, {e} {s}");
     }
+    // The plane falls four times as steeply to the east as to the south; rills that it cuts go their own way.
+    let sum = |field: &Field<f32>| (0..48 * 32).filter(inner).map(|i| field.data[i]).sum::<f32>();
+    assert!(sum(east) > sum(south), "{} {}", sum(east), sum(south));
 }
 
 #[test]
