@@ -144,7 +144,8 @@ impl Page {
 
     fn write_captions(&self) -> Outcome<()> {
         let mut text = String::from(
-            "# Gallery\n\nEvery picture here is drawn by `cargo run --release --example gallery`; nothing is retouched.\n\n",
+            "# Gallery\n\nEvery picture here is drawn by `cargo run --release --example gallery`; nothing is retouched. \
+             Worlds in space are in [Scenes](../scene.md).\n\n",
         );
         let sheets = [
             (

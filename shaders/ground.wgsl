@@ -53,8 +53,8 @@ fn covered(at: vec3<f32>, uv: vec2<f32>, normal: vec3<f32>, state: vec4<f32>, aw
     let over_sea = at.z - frame.map.z;
     // Borders are broken up by noise of some cells and of many pixels; the land's tone varies over larger ones.
     let patches = exp2(floor(log2(pixel * 24.0 + frame.air.w * 0.6)));
-    let rough = fbm(at.xy / patches, 4).x * 1.8;
-    let wide = fbm(at.xy / (patches * 21.0) + 3.7, 3).x;
+    let rough = fbm(at.xy / patches, 3).x * 1.9;
+    let wide = fbm(at.xy / (patches * 21.0) + 3.7, 2).x * 1.1;
     // Where much grows, plants hold what was laid down.
     var w = shares(over_sea, normal.z, state.r, state.b * (1.0 - 0.9 * cover.a), rough);
     var tint = tints(at, cover.rgb, over_sea);
@@ -98,7 +98,7 @@ fn covered(at: vec3<f32>, uv: vec2<f32>, normal: vec3<f32>, state: vec4<f32>, aw
 fn bedded(at: vec3<f32>, tint: vec3<f32>, wide: f32, pixel: f32) -> vec3<f32> {
     let thick = max(frame.bands.w, pixel * 6.0);
     let place = at.z / thick + 2.2 * wide;
-    let band = value_noise(vec2<f32>(place, 7.0)).x * 0.6 + value_noise(vec2<f32>(place * 3.1, 31.0)).x * 0.4;
+    let band = value_noise(vec2<f32>(place, 7.0 + 0.3 * wide)).x * 0.8;
     let dry = clamp((tint.r - tint.b) * 7.0 - 0.2, 0.0, 1.0);
     let red = mix(vec3<f32>(1.0), vec3<f32>(1.12, 0.94, 0.80), dry * (0.5 + 0.5 * band));
     return tint * red * (1.0 + 0.20 * band);

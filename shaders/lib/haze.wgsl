@@ -22,6 +22,8 @@ fn hazed(colour: vec3<f32>, at: vec3<f32>) -> vec3<f32> {
     let level = normalize(vec3<f32>(view.xy, max(abs(view.z) * 0.25, 0.06)));
     let sunward = pow(max(dot(view, frame.sun.xyz), 0.0), 8.0) * frame.air.x * select(1.0, 0.4, frame.rays.x > 0.0);
     let glow = frame.light.rgb * (0.035 * sunward);
-    let lit = mix(sky_light(level), frame.ambient.rgb * (1.0 / PI), 0.35) * 0.9 + glow;
+    var lit = frame.ambient.rgb * (1.0 / PI);
+    if (QUALITY > 0u) { lit = mix(sky_light(level), lit, 0.35) * 0.9; }
+    lit += glow;
     return colour * through + lit * (1.0 - through);
 }

@@ -48,7 +48,7 @@ const MOON: f64 = 0.02;
 /// Brightness of a night sky without a moon.
 const AIRGLOW: f64 = 0.0014;
 /// Exposure that shows a sunlit lawn as the eye does.
-const EXPOSURE: f64 = 0.72;
+const EXPOSURE: f64 = 0.64;
 
 /// Light of the white of a picture of the sky.
 const WHITE: f64 = 3.0;

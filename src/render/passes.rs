@@ -113,13 +113,19 @@ impl Gpu {
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
+    /// A sampler that filters; where a texture repeats, from one of its smaller copies, else between two.
     pub(super) fn sampler(&self, u: wgpu::AddressMode, v: wgpu::AddressMode) -> wgpu::Sampler {
+        let mipmap_filter = match v {
+            // The ground's textures are mixed of two sizes already.
+            wgpu::AddressMode::Repeat => wgpu::MipmapFilterMode::Nearest,
+            _ => wgpu::MipmapFilterMode::Linear,
+        };
         self.device.create_sampler(&wgpu::SamplerDescriptor {
             address_mode_u: u,
             address_mode_v: v,
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
-            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            mipmap_filter,
             ..Default::default()
         })
     }

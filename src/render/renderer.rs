@@ -266,8 +266,8 @@ impl Renderer {
             pixels: camera.pixels_per_radian(height),
             most_px: match moment.quality {
                 Quality::Draft => 16.0,
-                Quality::Normal => 8.0,
-                Quality::Full => 6.0,
+                Quality::Normal => 9.0,
+                Quality::Full => 8.0,
             },
         };
         let patches = land.tree.select(&seen);
