@@ -8,7 +8,7 @@ use upthrust::{
     grid::{Edges, Field, Grid},
     noise::{Fbm, Key},
     render::{Camera, Gpu, Land, Moment, Renderer},
-    scene::{Quality, SceneParams, ShadowKind},
+    scene::{Quality, SceneParams},
     world::{Layer, World},
 };
 
@@ -66,7 +66,7 @@ fn pictures(c: &mut Criterion) {
         ("without shafts", |s| s.fog.shafts = false),
         ("without glow", |s| s.bloom.on = false),
         ("without haze", |s| s.fog.on = false),
-        ("without shadows", |s| s.shadow.kind = ShadowKind::Off),
+        ("without shadows", |s| s.shadow.on = false),
     ];
     for (name, change) in without {
         let mut scene = plain();

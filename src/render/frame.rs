@@ -9,7 +9,7 @@ use super::{
     glow::LEVELS,
     ground::Lie,
 };
-use crate::scene::{GroundStyle, Quality, SceneParams, ShadowKind, SunParams, WaterLook};
+use crate::scene::{GroundStyle, Quality, SceneParams, SunParams, WaterLook};
 
 /// The uniform; fields and their meaning as in the shader.
 #[repr(C)]
@@ -170,7 +170,7 @@ impl Frame {
         let per_m = 3.0 / (scene.fog.visibility * sides);
         let relief = lie.relief_m() * lie.exaggeration;
         let cosine = |deg: f64| libm::cos(deg.to_radians());
-        let shadow = if scene.shadow.kind == ShadowKind::Off { 0.0 } else { scene.shadow.strength };
+        let shadow = if scene.shadow.on { scene.shadow.strength } else { 0.0 };
         let style = match scene.ground.style {
             GroundStyle::Natural => 0.0,
             GroundStyle::Bands => 1.0,

@@ -113,7 +113,7 @@ pub struct Rasters {
     pub slope: Vec<[f32; 2]>,
     /// sRGB of what grows or lies there, and how much grows.
     pub cover: Vec<[u8; 4]>,
-    /// Shares of snow, river, loose ground and open sky.
+    /// Shares of snow, nothing, loose ground and open sky.
     pub state: Vec<[u8; 4]>,
 }
 

@@ -98,25 +98,12 @@ impl Default for FogParams {
     }
 }
 
-/// How shadows are found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ShadowKind {
-    /// None.
-    Off,
-    /// By a map of depths from the sun, in cascades.
-    Map,
-    /// By a sweep over the heights towards the sun: soft, sharper near what throws them.
-    #[default]
-    Swept,
-}
-
 /// What throws shadows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ShadowParams {
-    /// How they are found: off, map or swept.
-    pub kind: ShadowKind,
+    /// Whether the land throws any: soft ones, sharper near what throws them.
+    pub on: bool,
     /// Strength: 0 none, 1 all that the sun gives.
     #[schemars(range(min = 0.0, max = 1.0), extend("x-unit" = "1", "x-effect" = "darker shadows"))]
     pub strength: f64,
@@ -127,6 +114,6 @@ pub struct ShadowParams {
 
 impl Default for ShadowParams {
     fn default() -> Self {
-        Self { kind: ShadowKind::Swept, strength: 1.0, occlusion: 1.0 }
+        Self { on: true, strength: 1.0, occlusion: 1.0 }
     }
 }

@@ -37,18 +37,6 @@ pub struct GroundParams {
     /// Strength of the textures' relief.
     #[schemars(range(min = 0.0, max = 4.0), extend("x-unit" = "1", "x-effect" = "rougher ground"))]
     pub relief: f64,
-    /// Picture of sand instead of the computed one.
-    #[schemars(extend("x-path" = true))]
-    pub sand: Option<String>,
-    /// Picture of grass.
-    #[schemars(extend("x-path" = true))]
-    pub grass: Option<String>,
-    /// Picture of rock.
-    #[schemars(extend("x-path" = true))]
-    pub rock: Option<String>,
-    /// Picture of snow.
-    #[schemars(extend("x-path" = true))]
-    pub snow: Option<String>,
 }
 
 impl Default for GroundParams {
@@ -60,10 +48,6 @@ impl Default for GroundParams {
             rock_deg: [28.0, 42.0],
             snow_deg: [38.0, 55.0],
             relief: 1.0,
-            sand: None,
-            grass: None,
-            rock: None,
-            snow: None,
         }
     }
 }

@@ -8,7 +8,7 @@ mod light;
 mod look;
 
 pub use camera::{CameraParams, KeyParams, Movement};
-pub use light::{FogParams, ShadowKind, ShadowParams, SkyParams, SunParams};
+pub use light::{FogParams, ShadowParams, SkyParams, SunParams};
 pub use look::{BloomParams, GroundParams, GroundStyle, LavaLook, SmokeLook, WaterLook, WaterParams};
 
 use schemars::JsonSchema;
