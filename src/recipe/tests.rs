@@ -381,8 +381,8 @@ fn a_scene_is_checked_to_its_last_key() {
             "t.toml:4: 'rock_deg' in 'ground' of [scene] must be two numbers, the first below the second, each between 0 and 90, not [42, 28]",
         ),
         (
-            "[scene.ground]\nsand = \"no.png\"\n",
-            "t.toml:4: 'sand' in 'ground' of [scene]: there is no file 'no.png' (paths are relative to the recipe)",
+            "[scene.sky]\npicture = \"no.png\"\n",
+            "t.toml:4: 'picture' in 'sky' of [scene]: there is no file 'no.png' (paths are relative to the recipe)",
         ),
         (
             "[[scene.camera.keys]]\nat = 0.5\nview_dge = 3\n",
